@@ -114,11 +114,15 @@ std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int Nam
   return chosen;
 }
 
-/// Whether a channel is one axis of a vector that an instrument measures.
-bool is_of_axes(const std::string& name) {
+/// Whether a channel is one axis of a rate or acceleration, or of any vector that an instrument measures.
+bool is_motion_of_axes(const std::string& name) {
   for (const Axis axis : {Axis::x, Axis::y, Axis::z})
-    if (names_angular_rate(name, axis) || names_acceleration(name, axis) || names_position(name, axis)) return true;
+    if (names_angular_rate(name, axis) || names_acceleration(name, axis)) return true;
   return false;
+}
+bool is_of_axes(const std::string& name) {
+  return is_motion_of_axes(name) || names_position(name, Axis::x) || names_position(name, Axis::y) ||
+         names_position(name, Axis::z);
 }
 
 /// Guesses the state if no hint indicates one. In tables of u and y, y is usually last. So this takes the channel that
@@ -185,26 +189,19 @@ void guess_inputs(const std::vector<SurveyedFile>& files, const std::vector<Cand
     guess_inputs_by_place(all, by_place, guess);
 }
 
-/// A gyro's or accelerometer's axis that hardly moves is no state: the axis beside it that moves most is.
+/// An axis of a rate or acceleration that hardly moves is no state: the axis beside it that moves most is.
 void leave_resting_axis(const std::vector<SurveyedFile>& files, Guess& guess) {
   constexpr double hardly = 0.02;
-  const auto axes_of = [](const SurveyedChannel& c) {
-    for (const Axis axis : {Axis::x, Axis::y, Axis::z})
-      if (names_angular_rate(c.name, axis) || names_acceleration(c.name, axis))
-        return c.name.substr(0, c.name.size() - 1);
-    return std::string();
-  };
   for (ChannelPlace& state : guess.states) {
     const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
-    const std::string axes = axes_of(channels[state.channel]), rests = channels[state.channel].name;
-    const double moved = channels[state.channel].check.sd;
-    for (std::size_t c = 0; c < channels.size() && !axes.empty(); ++c)
-      if (axes_of(channels[c]) == axes && channels[c].is_number() && moved < hardly * channels[c].check.sd &&
-          channels[c].check.sd > channels[state.channel].check.sd)
+    const SurveyedChannel& rests = channels[state.channel];
+    for (std::size_t c = 0; c < channels.size() && is_motion_of_axes(rests.name); ++c)
+      if (is_motion_of_axes(channels[c].name) && channels[c].name.size() == rests.name.size() &&
+          channels[c].name.starts_with(rests.name.substr(0, rests.name.size() - 1)) &&
+          rests.check.sd < hardly * channels[c].check.sd && channels[state.channel].check.sd < channels[c].check.sd)
         state.channel = c;
-    if (channels[state.channel].name != rests)
-      guess.reasons.push_back(
-          {fmt::format("{} hardly moves beside {}, which is taken", rests, channels[state.channel].name), "state"});
+    if (const std::string& moves = channels[state.channel].name; moves != rests.name)
+      guess.reasons.push_back({fmt::format("{} hardly moves beside {}, which is taken", rests.name, moves), "state"});
   }
 }
 

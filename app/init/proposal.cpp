@@ -46,7 +46,7 @@ std::string short_name(const std::string& name) {
 double wrap_period(const SurveyedChannel& channel) {
   constexpr double jump = 0.8, step = 0.2;
   std::vector<double> periods{360.0, 2.0 * EIGEN_PI};
-  for (const int bits : {8, 10, 12, 14, 15, 16, 24, 32}) periods.push_back(std::ldexp(1.0, bits));
+  for (int bits = 8; bits <= 32; ++bits) periods.push_back(std::ldexp(1.0, bits));
   const Eigen::Index rest = channel.values.size() - 1;
   const Eigen::ArrayXd steps = (channel.values.tail(rest) - channel.values.head(rest)).array().abs();
   const double range = channel.check.largest - channel.check.least;
@@ -55,15 +55,6 @@ double wrap_period(const SurveyedChannel& channel) {
         ((steps > jump * period) || (steps < step * period) || !steps.isFinite()).all())
       return period;
   return 0.0;
-}
-
-/// Share of the samples at an end of the range at which a limiter acts, and that end.
-std::pair<double, double> share_at_limit(const SurveyedChannel& channel) {
-  const SaturationLimits limits = saturation_limits({channel.values});
-  const auto share = [&](const auto& at) { return static_cast<double>(at.count()) / static_cast<double>(at.size()); };
-  const double low = share(channel.values.array() <= limits.low), high = share(channel.values.array() >= limits.high);
-  if (limits.soft) return {};
-  return high >= low ? std::pair{high, channel.check.largest} : std::pair{low, channel.check.least};
 }
 
 /// Builds the proposed configuration from the survey.
@@ -118,13 +109,19 @@ class Proposer {
           "input");
   }
 
+  /// Names inputs that often stand at an end of their range, where a limiter acts.
   void limits() {
     constexpr double often = 0.05;
-    for (const ChannelPlace& place : guess_.inputs)
-      if (const auto [share, end] = share_at_limit(channel(place)); share > often)
-        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples", channel(place).name, end,
-                          100.0 * share),
+    for (const ChannelPlace& place : guess_.inputs) {
+      const Eigen::ArrayXd values = channel(place).values.array();
+      const SaturationLimits limits = saturation_limits({channel(place).values});
+      const Eigen::Index low = (values <= limits.low).count(), high = (values >= limits.high).count();
+      const double share = static_cast<double>(std::max(low, high)) / static_cast<double>(values.size());
+      if (!limits.soft && share > often)
+        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples", channel(place).name,
+                          high >= low ? channel(place).check.largest : channel(place).check.least, 100.0 * share),
               "input");
+    }
   }
 
   std::string runs_text(const FileSet& set, bool listed) const {

@@ -35,7 +35,7 @@ class TableSurvey {
       SurveyedChannel& channel = table.channels.back();
       if (channel.is_number()) {
         channel.check = check_channel(channel.values);
-        channel.counts = counts_up(channel.values, names_clock(channel.name));
+        channel.counts = counts_up(channel.values);
       } else {
         channel.type = "text";
         if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
@@ -189,21 +189,20 @@ class TableSurvey {
   }
 
   /// Whether values are a clock or a counter: they increase evenly, also where some are missing or whole numbers are
-  /// held, or they never fall and are named so or are seconds since 1970.
-  static bool counts_up(const Eigen::VectorXd& all, bool named) {
+  /// held, or they are seconds since 1970.
+  static bool counts_up(const Eigen::VectorXd& all) {
     std::vector<double> v, rises;
     for (const double value : all)
       if (std::isfinite(value)) v.push_back(value);
     if (v.size() < 2) return false;
     const auto known = Eigen::VectorXd::Map(v.data(), std::ssize(v));
     if (rises_evenly(known) || is_since_1970(known)) return true;
-    bool by_one = true;
     for (std::size_t k = 1; k < v.size(); ++k) {
-      if (v[k] < v[k - 1] && v[k] != v[0]) return false;  // a run may start again
-      by_one = by_one && (v[k] <= v[k - 1] || v[k] == v[k - 1] + 1.0);
-      if (v[k] > v[k - 1]) rises.push_back(static_cast<double>(k));
+      const bool rises_by_one = v[k] == v[k - 1] + 1.0;
+      if (!rises_by_one && v[k] != v[k - 1] && v[k] != v[0]) return false;  // a run may start again
+      if (rises_by_one) rises.push_back(static_cast<double>(k));
     }
-    return named || (by_one && rises_evenly(Eigen::VectorXd::Map(rises.data(), std::ssize(rises))));
+    return rises_evenly(Eigen::VectorXd::Map(rises.data(), std::ssize(rises)));
   }
 
   /// Whether the value changes only where the column that separates runs changes.

@@ -83,7 +83,6 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
                                 " date time ", " date ",    " elapsed ", " uptime "};
-constexpr std::array clock_words{" time ", " stamp ", " timestamp "};
 constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
                                      " target ",   " reference ", " ref "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
@@ -149,7 +148,6 @@ NameScore score_name(std::string_view name, std::string_view type) {
 }
 
 bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
-bool names_clock(std::string_view name) { return any_of(clock_words, words_of_name(name)); }
 bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 

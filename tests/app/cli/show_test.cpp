@@ -1,7 +1,6 @@
 #include <gmock/gmock.h>
 
 #include <limits>
-#include <sstream>
 
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
@@ -9,13 +8,6 @@
 
 namespace modebank::test {
 namespace {
-
-std::vector<std::string> lines_of(const std::string& text) {
-  std::vector<std::string> lines;
-  std::istringstream stream(text);
-  for (std::string line; std::getline(stream, line);) lines.push_back(line);
-  return lines;
-}
 
 TEST(NumberText, IsFixedWhereThatFits) {
   EXPECT_EQ(app::fixed_or_short(0.0348, 5), "0.03480");
@@ -54,7 +46,7 @@ TEST(TextTable, GoesOnBelowWithItsKeyRepeated) {
   EXPECT_EQ(table.text(0),
             "   K      BIC      AIC      ICL\n   1     10.5     20.5     30.5\n   2      1.5      2.5      3.5 <-\n");
   EXPECT_EQ(table.text(15), "K  BIC  AIC\n1 10.5 20.5\n2  1.5  2.5 <-\nK  ICL\n1 30.5\n2  3.5 <-\n");
-  for (const std::string& line : lines_of(table.text(15))) EXPECT_LE(app::columns_of(line), 15) << line;
+  for (const std::string& line : app::lines_of(table.text(15))) EXPECT_LE(app::columns_of(line), 15) << line;
 }
 
 }  // namespace

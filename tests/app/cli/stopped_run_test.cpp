@@ -10,6 +10,7 @@
 #include "app/chain/stage_store.hpp"
 #include "app/cli/kept_stages.hpp"
 #include "io/files/read_file.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -81,6 +82,11 @@ TEST_F(StoppedRun, GoesOnFromTheStagesItFinished) {
   // The process is stopped again before it finishes another stage. The stages of the first process must still exist.
   EXPECT_NE(stopped_after(5, computed).find("are kept in"), std::string::npos);
   EXPECT_EQ(computed, 0);
+  try {
+    const app::KeptStages kept(output());
+    throw DataError("no space left for the archive");
+  } catch (const DataError&) {  // keeps the stages, too
+  }
   {
     app::KeptStages kept(output());
     SlowStage same, other;
