@@ -46,8 +46,8 @@ class TableSurvey {
     find_time(table);
     leave_out_unset(table);
     find_run(table);
-    for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
     table.sampling = check_sampling(one_run(table));
+    for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
     return table;
   }
 

@@ -83,10 +83,10 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
                                 " date time ", " date ",    " elapsed ", " uptime "};
-constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
-                                     " target ",   " reference ", " ref "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};
+constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
+                                     " target ",   " reference ", " ref "};
 
 template <std::size_t size>
 bool any_of(const std::array<const char*, size>& list, std::string_view words) {
