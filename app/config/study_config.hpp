@@ -27,7 +27,6 @@ struct StudyConfig {
   OnFailure on_failure = OnFailure::record;
   StudyStage stage = StudyStage::all;
   std::int64_t shard_index = 0, shard_count = 1;
-  bool flat = false;
   std::int64_t slurm_tasks = 0;  ///< number of tasks; 0: derived from the number of runs
   std::string slurm_options;     ///< options for sbatch, separated by spaces
 };

@@ -129,7 +129,7 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   check_plan_is_of(plan, command.config, command.store.folder());
   const StudyTable table = collect_table(command.store, plan, whole);
   const Answers answers = answer(table);
-  write_study(command.store, plan, table, answers, command.config.study.flat ? ArchiveUse::copy : ArchiveUse::link);
+  write_study(command.store, plan, table, answers);
   command.call.say(table_text(table, command.store));
   write_best_runs(command.store.folder(), command.config, table, answers);
   command.call.say(fmt::format("\n{}\ntable     {}, {}\n", answers_text(table, answers),

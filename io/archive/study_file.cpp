@@ -56,15 +56,6 @@ void link_archives(const hdf5::Handle& file, const StudyFile& study, const std::
                 "link to " + path.string());
 }
 
-void copy_archives(const hdf5::Handle& file, const StudyFile& study) {
-  const hdf5::Handle trials = make_group(file, trials_group);
-  for (const auto& [name, path] : study.archives) {
-    const OpenArchive archive(path);
-    hdf5::check(H5Ocopy(archive.root().id(), ".", trials.id(), name.c_str(), H5P_DEFAULT, H5P_DEFAULT),
-                "copy " + path.string());
-  }
-}
-
 NamedColumn::Values empty_column(const hdf5::StoredArray& table, unsigned member) {
   const hdf5::Handle type(H5Tget_member_type(table.type(), member), H5Tclose, "read a column's type");
   switch (H5Tget_class(type.id())) {
@@ -104,39 +95,15 @@ std::vector<NamedColumn> read_columns(const hdf5::StoredArray& table) {
 
 }  // namespace
 
-namespace {
-
 /// The file is made in memory, so a full disk cannot interrupt HDF5.
-void write_linked(const std::filesystem::path& path, const StudyFile& study) {
+void write_study_file(const std::filesystem::path& path, const StudyFile& study) {
+  const hdf5::Quiet quiet;
   const ArchiveImage image;
   write_table_of_runs(image.file(), study);
   link_archives(image.file(), study, std::filesystem::absolute(path).parent_path());
   const std::string_view content = image.content();
   const UserBlock block = make_user_block(sha256_hex(content));
   replace_file(path, {std::string_view(block.data(), block.size()), content});
-}
-
-/// The file is made on disk, because all archives together may exceed memory.
-void write_copied(const std::filesystem::path& path, const StudyFile& study) {
-  replace_file(path, [&](const std::filesystem::path& temporary) {
-    {
-      const hdf5::Handle file = create_archive_file(temporary);
-      write_table_of_runs(file, study);
-      copy_archives(file, study);
-      hdf5::check(H5Fflush(file.id(), H5F_SCOPE_GLOBAL), "complete the file");
-    }
-    stamp_hash(temporary);
-  });
-}
-
-}  // namespace
-
-void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use) {
-  const hdf5::Quiet quiet;
-  if (use == ArchiveUse::link)
-    write_linked(path, study);
-  else
-    write_copied(path, study);
 }
 
 StudyFile read_study_file(const OpenArchive& file, const std::string& table) {

@@ -35,12 +35,9 @@ struct StudyFile {
   std::vector<NamedTable> answers;  ///< computed from the table and stored as /answers/<name>
 };
 
-/// Whether /trials/<name> are external links or copies of the archives' content. Links are relative to the file's
-/// folder.
-enum class ArchiveUse { link, copy };
-
-/// Writes the file under a temporary name, hashes it and renames it, like write_archive.
-void write_study_file(const std::filesystem::path& path, const StudyFile& study, ArchiveUse use = ArchiveUse::link);
+/// Writes the file under a temporary name, hashes it and renames it, like write_archive. /trials/<name> are external
+/// links, relative to the file's folder.
+void write_study_file(const std::filesystem::path& path, const StudyFile& study);
 
 /// Reads everything except the archives. Throws the same exceptions as read_archive, and DataError if the table does
 /// not exist.

@@ -116,44 +116,38 @@ std::vector<Path> find_partners(const FilePattern& inputs, const FilePattern& st
 
 RunFiles::RunFiles(const std::string& key, const std::string& root, const std::string& text) : key_(key) {
   const FilePattern whole(key, root, text.find('*') == text.rfind('*') ? text : text.substr(0, text.find(',')));
-  const auto split = [&](const std::string& all, const char* mark) {
-    std::vector<std::string> parts;
-    boost::iter_split(parts, all, boost::first_finder(mark));
-    return parts;
-  };
   const bool is_file = !whole.has_star() && is_there(whole.path_of(""));
-  for (const std::string& entry : is_file ? std::vector{text} : split(text, ",")) {
-    std::vector<FilePattern>& parts = entries_.emplace_back();
-    for (const std::string& part : is_file ? std::vector{entry} : split(entry, " + ")) {
-      const std::string name(is_file ? std::string_view(part) : without_blanks(part));
-      if (name.empty() && !text.empty()) throw ConfigurationError(fmt::format("{} = {}: an entry is empty", key, text));
-      parts.emplace_back(key, root, name);
-      if (parts.back().has_star() && text != part)
-        throw ConfigurationError(
-            fmt::format("{} = {}: a list cannot contain a *; give one path with a *, or a list of files", key, text));
-    }
+  std::vector<std::string> listed{text};
+  if (!is_file) boost::split(listed, text, boost::is_any_of(","));
+  for (const std::string& entry : listed) {
+    const std::string name(is_file ? std::string_view(entry) : without_blanks(entry));
+    if (name.empty() && !text.empty()) throw ConfigurationError(fmt::format("{} = {}: an entry is empty", key, text));
+    entries_.emplace_back(key, root, name);
+    if (entries_.back().has_star() && text != entry)
+      throw ConfigurationError(
+          fmt::format("{} = {}: a list cannot contain a *; give one path with a *, or a list of files", key, text));
   }
 }
 
 std::vector<RunFiles::File> RunFiles::listed() const {
   std::vector<File> files;
-  for (const std::vector<FilePattern>& parts : entries_) {
-    File& file = files.emplace_back();
-    for (const FilePattern& part : parts) file.parts.push_back(part.path_of(part.runs().front()));
-    file.run = parts.front().runs().front();
-    for (std::size_t i = 0; i + 1 < files.size(); ++i)
-      if (files[i].run == file.run)
-        throw ConfigurationError(fmt::format("{}: {} and {} would both have the run name {}", key_,
-                                             files[i].parts.front().string(), file.parts.front().string(), file.run));
+  for (const FilePattern& entry : entries_) {
+    const std::string run = entry.runs().front();
+    const File file{run, entry.path_of(run)};
+    for (const File& other : files)
+      if (other.run == file.run)
+        throw ConfigurationError(fmt::format("{}: {} and {} would both have the run name {}", key_, other.path.string(),
+                                             file.path.string(), file.run));
+    files.push_back(file);
   }
   return files;
 }
 
 std::vector<RunFiles::File> RunFiles::files() const {
-  const FilePattern& first = entries_.front().front();
+  const FilePattern& first = entries_.front();
   std::vector<File> files;
   if (first.has_star())
-    for (const std::string& run : first.runs()) files.push_back({run, {first.path_of(run)}});
+    for (const std::string& run : first.runs()) files.push_back({run, first.path_of(run)});
   else
     files = listed();
   std::sort(files.begin(), files.end(), [](const File& a, const File& b) { return a.run < b.run; });
@@ -161,11 +155,11 @@ std::vector<RunFiles::File> RunFiles::files() const {
 }
 
 std::vector<RunFiles::File> RunFiles::partners(const RunFiles& theirs, const std::vector<std::string>& runs) const {
-  const FilePattern &own = entries_.front().front(), &other = theirs.entries_.front().front();
+  const FilePattern &own = entries_.front(), &other = theirs.entries_.front();
   std::vector<File> partners;
-  if (entries_.size() == 1 && theirs.entries_.size() == 1 && entries_.front().size() == 1) {
+  if (entries_.size() == 1 && theirs.entries_.size() == 1) {
     const std::vector<Path> paths = find_partners(other, own, runs);
-    for (std::size_t i = 0; i < runs.size(); ++i) partners.push_back({runs[i], {paths[i]}});
+    for (std::size_t i = 0; i < runs.size(); ++i) partners.push_back({runs[i], paths[i]});
     return partners;
   }
   if (entries_.size() != theirs.entries_.size() || own.has_star() || other.has_star())
@@ -175,7 +169,7 @@ std::vector<RunFiles::File> RunFiles::partners(const RunFiles& theirs, const std
   const std::vector<File> all = theirs.listed(), here = listed();
   for (const std::string& run : runs)
     for (std::size_t i = 0; i < all.size(); ++i)
-      if (all[i].run == run) partners.push_back({run, here[i].parts});
+      if (all[i].run == run) partners.push_back({run, here[i].path});
   return partners;
 }
 

@@ -38,19 +38,19 @@ class FilePattern {
 };
 
 /// The files of a key. The key has one path with at most one `*`, or one path without `*` for each run ("a.csv,
-/// b.csv"). A run's recording may have several parts, in the order of writing ("a_0.bag + a_1.bag").
+/// b.csv").
 class RunFiles {
  public:
   struct File {
     std::string run;
-    std::vector<std::filesystem::path> parts;  ///< one file, or the parts of a recording
+    std::filesystem::path path;
   };
 
   /// If a file has the whole text, commas included, as its name, the text means this file. Throws ConfigurationError in
   /// the same cases as FilePattern. Also throws it for a list with a `*`, an empty entry or two files of the same stem.
   RunFiles(const std::string& key, const std::string& root, const std::string& text);
 
-  bool one() const { return entries_.size() == 1 && !entries_.front().front().has_star(); }
+  bool one() const { return entries_.size() == 1 && !entries_.front().has_star(); }
   /// The files in byte order of their runs. Throws ConfigurationError if a file is missing.
   std::vector<File> files() const;
   /// The file of each of these runs. In a list, it is the file at the run's position in `theirs`. Throws
@@ -62,7 +62,7 @@ class RunFiles {
   std::vector<File> listed() const;
 
   std::string key_;
-  std::vector<std::vector<FilePattern>> entries_;  // parts of each file
+  std::vector<FilePattern> entries_;
 };
 
 /// The states file of each run. Throws ConfigurationError with both files if a file is missing, or if only one of the

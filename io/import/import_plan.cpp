@@ -130,8 +130,8 @@ std::vector<FilePlan> plan_files(const DataOptions& options) {
   names = with_roles(names, options);
   std::vector<FilePlan> plans;
   const auto add = [&](FilePlan& plan, const RunFiles::File& file) {
-    plan.paths.push_back(file.parts.front());
-    plan.readers.push_back(open_table(file.parts, format_of(options)));
+    plan.paths.push_back(file.path);
+    plan.readers.push_back(open_table(file.path, format_of(options)));
   };
   for (const RunFiles::File& file : files) {
     if (std::find(names.begin(), names.end(), file.run) == names.end()) continue;

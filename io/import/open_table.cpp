@@ -187,14 +187,4 @@ std::shared_ptr<const TableReader> open_table(const Path& path, const FormatOpti
                                        path.string(), fmt::join(bytes_of(first), " ")));
 }
 
-std::shared_ptr<const TableReader> open_table(const std::vector<Path>& parts, const FormatOptions& options) {
-  if (parts.size() == 1) return open_table(parts.front(), options);
-  for (const Path& part : parts)
-    if (!is_ros_log(part, first_bytes(part)))
-      throw ConfigurationError(
-          fmt::format("{} is not a recording, and only recordings may have parts (a + b); separate runs by a comma",
-                      part.string()));
-  return std::make_shared<RecordingReader>(parts, options.definitions);
-}
-
 }  // namespace modebank

@@ -129,8 +129,7 @@ std::vector<Option> data_options() {
            MODEBANK_FIELD(data.root))
           .touch("when the data are in another folder than the configuration"),
       text("data.inputs", "a path with at most one *, or paths",
-           "files of the runs, one per run. The part that * matches names the run, else the file's name does. a + b: "
-           "parts of one recording",
+           "files of the runs, one per run. The part that * matches names the run, else the file's name does",
            MODEBANK_FIELD(data.inputs))
           .touch("always: the log's path", data, basic),
       text("data.states", "a path with at most one *, or paths",

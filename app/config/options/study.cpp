@@ -75,9 +75,6 @@ std::vector<Option> work_options() {
             MODEBANK_FIELD(study.stage))
           .touch("on a cluster: submit, then merge at the end"),
       shard_option().touch("to share a study among machines by hand; on a cluster the job script sets it"),
-      flag("study.flat", "whether merge copies the archives into study.h5 instead of linking to them",
-           MODEBANK_FIELD(study.flat))
-          .touch("true, when you copy study.h5 alone"),
       numeric(
           "study.slurm_tasks", between(0, 1'000'000), "",
           "number of tasks in the job array of submit, each with a share of the runs; 0: one per ten runs, at most 100",

@@ -154,12 +154,11 @@ StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const An
   return {plan.provenance, plan.config, "study", table_columns(table), {}, answer_tables(table, answers)};
 }
 
-void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
-                 ArchiveUse use) {
+void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers) {
   StudyFile file = study_file_of(plan, table, answers);
   for (const TrialRow& row : table.rows)
     if (row.status == TrialStatus::done) file.archives.emplace_back(row.key, store.archive(row.key));
-  write_study_file(store.folder() / "study.h5", file, use);
+  write_study_file(store.folder() / "study.h5", file);
   const std::string csv = table_csv(table);
   replace_file(store.folder() / "study.csv", {csv});
   // Only for the plan of this table: another process may have added values to the plan during a long pause.

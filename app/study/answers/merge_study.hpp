@@ -23,10 +23,8 @@ StudyTable with_scores(StudyTable table, const std::vector<std::optional<TrialSc
 /// Content of study.h5 for a table.
 StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const Answers& answers);
 
-/// Writes study.h5 (with the answers, and links to the archives or copies of these), study.csv, and the status of each
-/// row into plan.h5.
-void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers,
-                 ArchiveUse use);
+/// Writes study.h5 (with the answers, and links to the archives), study.csv, and the status of each row into plan.h5.
+void write_study(const TrialStore& store, const StudyPlan& plan, const StudyTable& table, const Answers& answers);
 
 /// Columns of the table: varied keys, repeat, seed, status, message, key, scores. The values of a varied key are
 /// numbers if all of them are numbers.

@@ -60,15 +60,6 @@ TEST_F(StudyCommands, OtherSettingsAndOtherDataAreRefused) {
   EXPECT_NE(data.err.find("run_00.csv has SHA-256"), std::string::npos) << data.err;
 }
 
-TEST_F(StudyCommands, FlatTablesHoldTheArchives) {
-  ASSERT_EQ(study_six({"--study.flat", "true"}).status, 0);
-  const std::string key = trials().front().stem();
-  std::filesystem::remove_all(file("s/trials"));
-  const ProgramResult shown = modebank({"show", file("s/study.h5").string(), "/trials/" + key + "/bank/weight"});
-  EXPECT_EQ(shown.status, 0) << shown.err;
-  EXPECT_TRUE(verify_archive(file("s/study.h5")).ok());
-}
-
 TEST_F(StudyCommands, FailuresAreOnRecordAndDoNotStopTheOthers) {
   const std::vector<std::string> keys{"--study.vary", "window.length = 10 | 500 | 12"};
   const ProgramResult result = study(keys);

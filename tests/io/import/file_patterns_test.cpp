@@ -111,7 +111,7 @@ TEST_F(FilePatterns, PartnersNeedTheSameStars) {
               AllOf(HasSubstr("pro_*.csv"), HasSubstr("imu.csv"), HasSubstr("both or neither")));
 }
 
-/// Lists of files, and parts of recordings.
+/// Lists of files.
 class ListedFiles : public FilePatterns {
  protected:
   RunFiles listed(const std::string& text, const char* key = "data.inputs") const {
@@ -136,22 +136,13 @@ TEST_F(ListedFiles, AreRunsByTheirStems) {
   EXPECT_TRUE(listed("a.csv").one());
 }
 
-TEST_F(ListedFiles, MayBeRecordingsInParts) {
-  for (const char* name : {"drive_0.bag", "drive_1.bag", "other.bag"}) touch(name);
-  const auto files = listed("other.bag, drive_0.bag + drive_1.bag").files();
-  ASSERT_EQ(files.size(), 2u);
-  EXPECT_EQ(files[0].run, "drive_0");
-  EXPECT_THAT(files[0].parts, ElementsAre(folder.path() / "drive_0.bag", folder.path() / "drive_1.bag"));
-  EXPECT_EQ(files[1].parts.size(), 1u);
-}
-
 TEST_F(ListedFiles, HavePartnersInTheSamePlace) {
   for (const char* name : {"u1.csv", "u2.csv", "y_b.csv", "y_a.csv"}) touch(name);
   const RunFiles inputs = listed("u2.csv, u1.csv"), states = listed("y_b.csv, y_a.csv", "data.states");
   const auto partners = states.partners(inputs, {"u1", "u2"});
   ASSERT_EQ(partners.size(), 2u);
-  EXPECT_EQ(partners[0].parts.front(), folder.path() / "y_a.csv");
-  EXPECT_EQ(partners[1].parts.front(), folder.path() / "y_b.csv");
+  EXPECT_EQ(partners[0].path, folder.path() / "y_a.csv");
+  EXPECT_EQ(partners[1].path, folder.path() / "y_b.csv");
   EXPECT_THAT(message_of<ConfigurationError>([&] {
                 listed("y_a.csv", "data.states").partners(inputs, {"u1", "u2"});
               }),
