@@ -109,8 +109,12 @@ class ArrayReader : public TableReader {
 
   std::vector<double> values_of(std::size_t column) const {
     const StoredColumn& stored = store_->columns()[column];
-    if (!(stored.step_s > 0.0)) return store_->numbers(column);
     std::vector<double> values(static_cast<std::size_t>(stored.rows));
+    if (!(stored.step_s > 0.0)) values = store_->numbers(column);
+    const auto [scale, offset, fill] = stored.packing;
+    for (double& value : values)
+      if (stored.packed) value = value == fill ? not_a_number : scale * value + offset;
+    if (!(stored.step_s > 0.0)) return values;
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<double>(k) * stored.step_s;
     return values;
   }
@@ -192,7 +196,7 @@ class ArrayReader : public TableReader {
     const std::size_t column = stored(request, request.time.column);
     const StoredColumn& from = store_->columns()[column];
     table.unwritten = store_->unwritten(column);
-    StampColumn stamps(request.time, from.type == nanoseconds_type ? "ns" : std::string_view(from.unit));
+    StampColumn stamps(request.time, from.unit);
     stamps.reserve(table.rows());
     const bool two = !request.time.second.empty();
     const std::vector<std::string> first = two || from.text ? texts(column) : std::vector<std::string>();
@@ -227,12 +231,11 @@ bool is_mat(const std::filesystem::path& path, std::string_view first) {
 
 bool is_time_name(std::string_view name) {
   name = split_unit(name).name;
-  if (constexpr std::string_view octave = ".value"; name.ends_with(octave)) name.remove_suffix(octave.size());
   std::string lower(name.substr(name.rfind('.') + 1));
   std::transform(lower.begin(), lower.end(), lower.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  constexpr std::array names{"t",    "time", "tout",    "stamp",   "timestamp", "time_s",  "t_s",
-                             "secs", "sec",  "seconds", "time_ns", "time_ms",   "time_us", "stamp_ns"};
+  constexpr std::array names{"t",   "time",    "tout",    "stamp",   "timestamp", "time_s",   "t_s",       "secs",
+                             "sec", "seconds", "time_ns", "time_ms", "time_us",   "stamp_ns", "timestamps"};
   return std::find(names.begin(), names.end(), lower) != names.end();
 }
 

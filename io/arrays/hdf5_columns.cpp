@@ -38,7 +38,6 @@ class Hdf5Columns : public ColumnStore {
       throw DataError(fmt::format("{}: {}", path_, error.what()));
     }
     walk.turn_matrices();
-    name_signals(walk.columns, walk.labels);
     if (walk.columns.empty()) fail_empty(walk);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);

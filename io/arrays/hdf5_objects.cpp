@@ -51,6 +51,15 @@ std::string hdf5_text_attribute(hid_t object, const std::string& name) {
   return text;
 }
 
+std::optional<double> hdf5_number_attribute(hid_t object, const std::string& name) {
+  if (!hdf5::has_attribute(object, name)) return {};
+  const hdf5::StoredArray attribute(object, hdf5::Place::attribute, name);
+  if (attribute.elements() != 1 || !hdf5_is_number(attribute.type())) return {};
+  double value = 0.0;
+  attribute.read(H5T_NATIVE_DOUBLE, &value);
+  return value;
+}
+
 std::string hdf5_unit(hid_t object) {
   for (const char* name : {"units", "unit", "Units", "Unit"})
     if (std::string unit = hdf5_text_attribute(object, name); !unit.empty()) return unit;
@@ -171,7 +180,8 @@ std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_
   hdf5::check(H5Dget_num_chunks(dataset, space.id(), &written), "count its chunks");
   std::vector<LineRange> ranges;
   if (written >= all) return ranges;
-  if (shape.size() == 2) offset[1 - along] = across / chunk[1 - along] * chunk[1 - along];
+  for (std::size_t d = 0; d < shape.size(); ++d)
+    if (d != along && shape[d] > 1) offset[d] = across / chunk[d] * chunk[d];
   for (hsize_t row = 0; row < shape[along]; row += chunk[along]) {
     offset[along] = row;
     unsigned mask = 0;
@@ -205,27 +215,6 @@ Handle hdf5_only_member(const std::vector<std::string>& member, Handle cell) {
     cell = std::move(row);
   }
   return cell;
-}
-
-std::vector<std::string> pickled_names(const std::string& pickle) {
-  std::vector<std::string> names;
-  std::string_view rest = pickle;
-  if (!rest.starts_with("(lp")) return {};
-  const auto take_line = [&rest] {
-    const std::size_t end = rest.find('\n');
-    const std::string_view line = rest.substr(0, end);
-    rest.remove_prefix(end == std::string_view::npos ? rest.size() : end + 1);
-    return line;
-  };
-  take_line();
-  while (!rest.empty() && rest != "." && rest != "a.") {
-    std::string_view line = take_line();
-    if (line.starts_with("a")) line.remove_prefix(1);
-    if (line.starts_with("p")) continue;  // Python's pickler stores an object here for later use
-    if (!line.starts_with("V") || line.find('\\') != std::string_view::npos) return {};
-    names.emplace_back(line.substr(1));
-  }
-  return names;
 }
 
 namespace {

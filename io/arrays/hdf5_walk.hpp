@@ -29,11 +29,10 @@ class Hdf5Walk {
   const std::string file;
   std::vector<StoredColumn> columns;
   std::vector<Hdf5Place> places;
-  std::map<std::string, std::string> labels;
   std::vector<std::string> left_out;              ///< one line for each object without columns
   std::map<std::string, std::string> unwritten;   ///< datasets that were never written: the reason, by column name
   std::map<std::string, Hdf5Place> sample_times;  ///< groups with a scalar Ts
-  int tables = 0;                                 ///< number of tables, from pandas or with compound rows
+  int tables = 0;                                 ///< number of tables with compound rows
 
   void group(hid_t id, const std::string& path, const std::string& name, int depth);
 
@@ -47,7 +46,7 @@ class Hdf5Walk {
     StoredColumn column;
     std::string object;
     hdf5::Shape shape;
-    hsize_t habit;
+    hsize_t along, across;  ///< the dimensions of rows and columns, if the file's other columns do not contradict
   };
   std::vector<Matrix> matrices_;
   std::set<haddr_t> seen_;
@@ -60,32 +59,19 @@ class Hdf5Walk {
 
   void note_foreign(const std::string& path);
 
-  /// Visits a group that Octave's `save -hdf5` wrote for one variable.
-  void octave_variable(hid_t id, const std::string& path, const std::string& name, int depth);
-
   void link(hid_t parent, const std::string& member, const std::string& path, const std::string& group_name, int depth);
 
   void dataset(hid_t id, const std::string& path, const std::string& group_name, const std::string& name, int depth);
 
   void plain(StoredColumn column, const std::string& path, const hdf5::Shape& shape, hsize_t habit);
 
-  /// Adds the members of a table's rows, including members in nested compounds. `names`: names of a member's elements.
-  void compound(hid_t type, const hdf5::Shape& shape, const Hdf5Place& place, const std::string& group_name,
-                const std::map<std::string, std::vector<std::string>>& names);
-  void member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name,
-              const std::vector<std::string>& names);
+  /// Adds the members of a table's rows, including members in nested compounds.
+  void compound(hid_t type, const hdf5::Shape& shape, const Hdf5Place& place, const std::string& group_name);
+  void member(hid_t type, hsize_t rows, const Hdf5Place& place, const std::string& group_name);
 
   /// MATLAB stores each field of a struct array as a dataset of references. Each reference belongs to one struct.
   void struct_array(hid_t id, hid_t type, const hdf5::Shape& shape, const std::string& group_name,
                     const std::string& name, int depth);
-
-  void note_label(hid_t id, const std::string& full, const hdf5::Shape& shape);
-
-  void fixed_frame(hid_t id, const std::string& path, const std::string& name);
-
-  void fixed_block(hid_t id, const std::string& path, const std::string& name, int block);
-
-  void table_frame(hid_t id, const std::string& path, const std::string& name);
 };
 
 }  // namespace modebank

@@ -9,38 +9,7 @@
 
 namespace modebank {
 
-namespace {
-
-/// Index of the last part of a dotted path.
-std::size_t last_part(const std::string& path) {
-  const std::size_t dot = path.rfind('.');
-  return dot == std::string::npos ? 0 : dot + 1;
-}
-
-/// The last part of a group's path if it is "signals" or "[0]" of "signals[0]". Empty for any other part.
-std::string signal_of(const std::string& group) {
-  const std::string part = group.substr(last_part(group));
-  if (part == "signals") return part;
-  return part.starts_with("signals[") ? part : std::string();
-}
-
-}  // namespace
-
-bool is_time(const StoredColumn& column) {
-  return column.type == nanoseconds_type || (!column.text && is_time_name(column.name));
-}
-
-void name_signals(std::vector<StoredColumn>& columns, const std::map<std::string, std::string>& labels) {
-  for (StoredColumn& column : columns) {
-    const std::string signal = signal_of(column.group);
-    if (signal.empty() || !column.name.starts_with("values")) continue;
-    const auto label = labels.find(column.group + ".label");
-    const std::string shown = label == labels.end() || label->second.empty() ? signal : label->second;
-    column.name = shown + column.name.substr(std::string("values").size());
-    const std::size_t part = last_part(column.group);
-    column.group.resize(part == 0 ? 0 : part - 1);
-  }
-}
+bool is_time(const StoredColumn& column) { return !column.text && is_time_name(column.name); }
 
 void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::string, double>& sample_time) {
   for (const auto& [group, step_s] : sample_time) {
@@ -60,6 +29,17 @@ void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::st
     StoredColumn& time = columns.emplace_back(StoredColumn{group, "time", "double", "s", commonest->first});
     time.step_s = step_s;
   }
+}
+
+std::string not_a_table(const std::string& name, const std::string& why, const std::string& python) {
+  return fmt::format("{} {}, so it is not read; as text: {}", name, why, python);
+}
+
+std::string savetxt_line(const std::string& module, const std::string& array, const std::string& name) {
+  return fmt::format(
+      "python3 -c \"import {}, numpy as np; a = np.squeeze({}); k = np.argmax(a.shape); np.savetxt('{}.csv', "
+      "np.moveaxis(a, k, 0).reshape(a.shape[k], -1), delimiter=',')\"",
+      module, array, name);
 }
 
 std::string matlab_conversion(const std::string& class_name, const std::string& variable) {

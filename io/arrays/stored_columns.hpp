@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -16,18 +17,19 @@ namespace modebank {
 struct StoredColumn {
   std::string group;  ///< path of the enclosing object, with dots between its parts; empty: the file itself
   std::string name;   ///< name within the group
-  std::string type;   ///< type in the file: double, int32, datetime64[ns], text, ...
+  std::string type;   ///< type in the file: double, int32, text, ...
   std::string unit;   ///< empty if the file states no unit
   std::uint64_t rows = 0;
   bool whole = false;  ///< the values are whole numbers; whole_numbers() returns them exactly
   bool text = false;
+  bool packed = false;  ///< a value is packing[0] * stored + packing[1], or missing if packing[2] is stored (netCDF)
+  std::array<double, 3> packing = {};
   double step_s = 0.0;  ///< > 0: the file has no values, and row k has the value k * step_s
 
   std::string path() const { return group.empty() ? name : group + "." + name; }
 };
 
-constexpr std::string_view nanoseconds_type = "datetime64[ns]";
-/// Whether a column contains times. Its type or its name shows this.
+/// Whether a column contains times. Its name shows this.
 bool is_time(const StoredColumn& column);
 
 /// The columns of a file. A column is read when it is requested.
@@ -48,19 +50,15 @@ class ColumnStore {
   virtual std::vector<std::string> texts(std::size_t column) const = 0;
 };
 
-/// Reads datasets of one or two dimensions (h5py, HDF5's own tools), compound tables, pandas' fixed and table formats,
-/// and MATLAB's v7.3 files, which are HDF5. External links, external storage and virtual datasets are not followed, and
-/// no pickle is executed. Throws ConfigurationError for a modebank archive. Throws it, with advice on conversion, for a
+/// Reads datasets of one or two dimensions (h5py, HDF5's own tools), compound tables
+/// and MATLAB's v7.3 files, which are HDF5. External links, external storage and virtual datasets are not followed.
+/// Throws ConfigurationError for a modebank archive. Throws it, with advice on conversion, for a
 /// file without columns. Throws DataError with HDF5's reason if HDF5 fails.
 std::unique_ptr<ColumnStore> open_hdf5_columns(const std::filesystem::path& path);
 
 /// Reads vectors and matrices of MATLAB's v4, v6 and v7 files with matio, including those in nested structs. Throws the
 /// same exceptions as open_hdf5_columns.
 std::unique_ptr<ColumnStore> open_mat_columns(const std::filesystem::path& path);
-
-/// For Simulink's "structure with time". A signal's values get the signal's label as their name, and the group that has
-/// the time. `labels`: the texts of NAME.signals.label or NAME.signals[0].label, by path.
-void name_signals(std::vector<StoredColumn>& columns, const std::map<std::string, std::string>& labels);
 
 /// A scalar Ts in a struct is the sample time of the struct's columns. Adds a column "time" to each struct that has Ts
 /// but no times. The new column has the most frequent length of the columns in the struct and its substructs.
@@ -76,6 +74,15 @@ std::string matlab_object(const std::string& class_name, const std::string& vari
 /// A line for objects of the newer class system in files of version 7. matio returns neither the name nor the class of
 /// these objects.
 std::string matlab_objects_without_name();
+
+/// Whether a matrix has far more columns than rows, so that its rows are the channels.
+constexpr bool are_channels_rows(std::uint64_t rows, std::uint64_t columns) { return columns > 10 * rows; }
+
+/// A line that names an array that is no table, with the line of Python that makes text files of it.
+std::string not_a_table(const std::string& name, const std::string& why, const std::string& python);
+/// A line of Python that writes an array of numbers as text, its longest dimension as rows. `array`: the expression
+/// that reads the array with this module.
+std::string savetxt_line(const std::string& module, const std::string& array, const std::string& name);
 
 /// A matrix with more columns than this is not listed column by column.
 constexpr std::uint64_t most_columns = 1000;

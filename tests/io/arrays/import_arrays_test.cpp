@@ -93,19 +93,6 @@ TEST_F(ImportArrays, TakeTsOfAStructForItsSampleTime) {
   }
 }
 
-TEST_F(ImportArrays, ReadPandasDatesExactly) {
-  options.root = test::golden_dir().string();
-  options.inputs = "pandas_stamped.h5";
-  options.state = {"v"};
-  options.input = {"steer"};
-  const ImportedData data = import();
-  const Trajectory& run = data.recording.runs[0];
-  EXPECT_EQ(run.state, row({0, 0.5, 1, 1.5}));
-  EXPECT_EQ(run.time_origin_ns, 1'700'000'000'000'000'000);
-  EXPECT_NEAR(run.time_s(3), 0.3, 1e-12);
-  EXPECT_EQ(data.files[0].bytes, std::filesystem::file_size(test::golden_dir() / "pandas_stamped.h5"));
-}
-
 /// The smallest and the largest whole number are stamps 584 years apart. Their difference overflows 64 bits.
 TEST_F(ImportArrays, RefuseStampsFarApart) {
   for (const std::vector<std::int64_t>& stamps :

@@ -18,7 +18,6 @@ using test::MatWriter;
 using test::message_of;
 using test::TemporaryFolder;
 using ::testing::AllOf;
-using ::testing::DoubleNear;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::UnorderedElementsAre;
@@ -77,25 +76,6 @@ TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
   EXPECT_THAT(store->whole_numbers(position(*store, "stamp")),
               ElementsAre(1'700'000'000'000'000'001, 1'700'000'000'000'000'002));
   EXPECT_EQ(store->columns()[position(*store, "log.imu.wz")].group, "log.imu");
-}
-
-/// The variable `out.ScopeData` of To Workspace and Scope blocks. It has a time, and signals with values and labels.
-TEST_P(MatFiles, NameSignalsOfSimulinksStructureWithTime) {
-  const auto signal = [](const char* label, std::vector<double> values, std::size_t rows) {
-    return std::vector<matvar_t*>{MatWriter::matrix("values", std::move(values), rows),
-                                  MatWriter::text("label", label)};
-  };
-  {
-    MatWriter all = writer();
-    matvar_t* signals = MatWriter::structure(
-        "signals", {"values", "label"}, {signal("wheel speed", {1, 2, 3}, 3), signal("pose", {1, 2, 3, 4, 5, 6}, 3)});
-    all.write(MatWriter::structure("scope", {"time", "signals"}, {{MatWriter::matrix("time", {0, 1, 2}, 3), signals}}));
-  }
-  const auto store = open();
-  EXPECT_THAT(paths(*store), UnorderedElementsAre("scope.time", "scope.wheel speed", "scope.pose[0]", "scope.pose[1]"));
-  EXPECT_THAT(numbers(*store, "scope.wheel speed"), ElementsAre(1, 2, 3));
-  EXPECT_THAT(numbers(*store, "scope.pose[1]"), ElementsAre(4, 5, 6));
-  for (const StoredColumn& column : store->columns()) EXPECT_EQ(column.group, "scope");
 }
 
 TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
@@ -220,45 +200,6 @@ TEST_F(Hdf5Files, NameMatlabsObjects) {
               HasSubstr("speed is a MATLAB timeseries: convert it in MATLAB with s = struct('t', speed.Time"));
 }
 
-/// From tests/golden/generate/pandas_files.py.
-TEST(PandasFiles, GiveTheirColumns) {
-  struct Case {
-    const char* name;
-    std::vector<std::string> columns;
-  };
-  for (const Case& c : {Case{"pandas_fixed.h5", {"time", "v", "steer", "gear"}},
-                        Case{"pandas_table.h5", {"index", "v", "steer", "gear", "name"}},
-                        Case{"pandas_columns.h5", {"index", "v", "steer", "gear"}},
-                        Case{"pandas_stamped.h5", {"stamp", "v", "steer", "gear"}}}) {
-    const auto store = open_hdf5_columns(test::golden_dir() / c.name);
-    EXPECT_THAT(paths(*store), ::testing::ElementsAreArray(c.columns)) << c.name;
-    EXPECT_THAT(numbers(*store, "v"), ElementsAre(0.0, 0.5, 1.0, 1.5)) << c.name;
-    EXPECT_THAT(numbers(*store, "steer"), ElementsAre(-0.2, -0.1, 0.0, DoubleNear(0.1, 1e-15))) << c.name;
-    EXPECT_THAT(store->whole_numbers(position(*store, "gear")), ElementsAre(0, 1, 2, 3)) << c.name;
-  }
-  EXPECT_THAT(open_hdf5_columns(test::golden_dir() / "pandas_table.h5")->texts(4), ElementsAre("a", "b", "c", "dd"));
-}
-
-TEST(PandasFiles, GiveDatesAsNanoseconds) {
-  for (const auto& [name, column] :
-       {std::pair("pandas_stamped.h5", "stamp"), std::pair("pandas_columns.h5", "index")}) {
-    const auto store = open_hdf5_columns(test::golden_dir() / name);
-    const std::size_t at = position(*store, column);
-    EXPECT_EQ(store->columns()[at].type, "datetime64[ns]");
-    EXPECT_THAT(store->whole_numbers(at), ElementsAre(1'700'000'000'000'000'000, 1'700'000'000'100'000'000,
-                                                      1'700'000'000'200'000'000, 1'700'000'000'300'000'000));
-  }
-}
-
-TEST(PandasFiles, GiveTruthValuesAsNumbers) {
-  for (const char* name : {"pandas_truths_fixed.h5", "pandas_truths_table.h5", "pandas_truths_columns.h5"}) {
-    const auto store = open_hdf5_columns(test::golden_dir() / name);
-    EXPECT_THAT(numbers(*store, "brake"), ElementsAre(1.0, 0.0, 0.0, 1.0)) << name;
-    EXPECT_THAT(store->whole_numbers(position(*store, "brake")), ElementsAre(1, 0, 0, 1)) << name;
-    EXPECT_THAT(numbers(*store, "v"), ElementsAre(0.0, 0.5, 1.0, 1.5)) << name;
-  }
-}
-
 TEST_F(Hdf5Files, GiveBitsOfAnyLengthAsNumbers) {
   const hid_t id = create();
   const hsize_t shape = 3;
@@ -272,9 +213,35 @@ TEST_F(Hdf5Files, GiveBitsOfAnyLengthAsNumbers) {
   EXPECT_THAT(numbers(*open_hdf5_columns(file), "flags"), ElementsAre(0.0, 256.0, 65535.0));
 }
 
-TEST(PandasFiles, OfAForeignFilterSayHowToWriteThem) {
-  const auto store = open_hdf5_columns(test::golden_dir() / "pandas_blosc.h5");
-  EXPECT_THAT(message_of<DataError>([&] { numbers(*store, "v"); }), HasSubstr("filter 32001 (blosc) is not installed"));
+TEST_F(Hdf5Files, OfAForeignFilterSayHowToWriteThem) {
+  const hid_t id = create();
+  const hsize_t shape = 2;
+  const double values[]{1.0, 2.0};
+  const hid_t space = H5Screate_simple(1, &shape, nullptr), made = H5Pcreate(H5P_DATASET_CREATE);
+  H5Pset_chunk(made, 1, &shape);
+  H5Pset_filter(made, 32001, H5Z_FLAG_OPTIONAL, 0, nullptr);
+  const hid_t data = H5Dcreate2(id, "v", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, made, H5P_DEFAULT);
+  const hsize_t first = 0;
+  H5Dwrite_chunk(data, H5P_DEFAULT, 0, &first, sizeof(values), values);
+  for (const auto close : {std::pair(data, H5Dclose), {made, H5Pclose}, {space, H5Sclose}, {id, H5Fclose}})
+    close.second(close.first);
+  const auto store = open_hdf5_columns(file);
+  EXPECT_THAT(message_of<DataError>([&] { numbers(*store, "v"); }), HasSubstr("filter 32001"));
+}
+
+/// A frame of pandas and a variable of Octave's -hdf5 are refused with the line that converts them.
+TEST_F(Hdf5Files, NameFramesOfPandasAndVariablesOfOctave) {
+  const hid_t id = create();
+  const hid_t frame = H5Gcreate2(id, "drive", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  text_attribute(frame, "pandas_type", "frame");
+  dataset(frame, "block0_values", {3, 2}, {1, 2, 3, 4, 5, 6});
+  const hid_t variable = H5Gcreate2(id, "x", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
+  text_attribute(variable, "OCTAVE_NEW_FORMAT", "1");
+  dataset(variable, "value", {3}, {1, 2, 3});
+  for (const hid_t group : {frame, variable}) H5Gclose(group);
+  H5Fclose(id);
+  EXPECT_THAT(message_of<ConfigurationError>([&] { open_hdf5_columns(file); }),
+              AllOf(HasSubstr("pandas.read_hdf('" + file.string() + "', 'drive')"), HasSubstr("save('-v7'")));
 }
 
 }  // namespace
