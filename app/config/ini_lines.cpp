@@ -22,7 +22,7 @@ bool is_path(const std::string& key) {
 
 bool takes_quotes(const std::string& key) {
   if (is_path(key)) return true;
-  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "weight"})
+  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "weight", "na"})
     if (key == std::string("data.") + of_names) return true;
   return false;
 }

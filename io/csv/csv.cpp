@@ -43,7 +43,7 @@ struct TableSink {
   std::string first, second;    // parts of the row's stamp
   std::size_t header_rows = 1;  // number of header rows that are still to come
   CsvNumbers parse;
-  bool rows_seen = false, empty_line_seen = false;
+  bool rows_seen = false, empty_line_seen = false, last_is_empty = false;
   std::vector<std::uint64_t> comment_lines;  // line numbers of the empty lines that replace comments
   std::size_t next_comment = 0;
   std::size_t fields = 0;
@@ -58,6 +58,7 @@ struct TableSink {
   void field(std::string_view text) {
     if (fields == 0 && empty_line_seen) error = "empty line before this row";
     const std::size_t column = fields++;
+    last_is_empty = without_blanks(text).empty();
     if (header_rows > 0 || column >= target.size()) return;
     if (target[column].texts != skipped) table.texts[static_cast<std::size_t>(target[column].texts)].emplace_back(text);
     if (target[column].numbers != skipped) number(column, static_cast<std::size_t>(target[column].numbers), text);
@@ -124,7 +125,7 @@ struct TableSink {
     } else if (header_rows > 0) {
       --header_rows;
       rows_seen = true;
-    } else if (fields != target.size()) {
+    } else if (fields != target.size() && !(fields == target.size() + 1 && last_is_empty)) {
       error = fmt::format("{} field{}, but the header has {}", fields, fields == 1 ? "" : "s", target.size());
     } else {
       table.line.push_back(line);
@@ -173,6 +174,13 @@ TableSink make_sink(std::string_view file, const CsvHead& head, const TableReque
   return sink;
 }
 
+/// The header as it is written. Empty if the text has none.
+std::string_view header_of(std::string_view text, const CsvHead& head) {
+  for (const TextRecord& record : first_records(text, true, rows_looked_at_for_table))
+    if (head.dialect.header_rows > 0 && !is_comment(record.text)) return record.text;
+  return {};
+}
+
 /// Whether a comment follows the first rows.
 bool has_late_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
@@ -187,9 +195,14 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   TableSink sink = make_sink(file, head, request, rows_at_most, na);
   sink.header_rows = head.dialect.header_rows;
   PreparedText prepared;
-  if (head.dialect.rewritten() || has_late_comment(text)) {
-    prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line());
+  const std::string_view header = header_of(text, head);
+  const bool repeats = !header.empty() && text.find(fmt::format("\n{}", header)) != std::string_view::npos;
+  if (head.dialect.rewritten() || has_late_comment(text) || repeats) {
+    prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line(), header);
     sink.comment_lines = std::move(prepared.comment_lines);
+    if (prepared.repeated_line > 0)
+      sink.table.notes.push_back(
+          fmt::format("line {} repeats the header; such lines are left out", prepared.repeated_line));
     text = prepared.text;
   }
   CsvPass pass(file, sink, head.dialect.delimiter(), head.dialect.first_line());
@@ -202,6 +215,7 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   pass.feed(text);
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
+  if (!head.contradiction.empty()) sink.table.notes.push_back(head.contradiction);
   if (!head.dialect.note.empty()) sink.table.notes.push_back(head.dialect.note);
   if (const std::size_t skipped = head.dialect.skipped; skipped > 0)
     sink.table.notes.push_back(fmt::format("{} line{} above the table {} skipped (data.skip_rows)", skipped,

@@ -43,18 +43,25 @@ bool is_value(const std::string& field) {
          with_comma.parse(field).status == NumberStatus::ok || is_known_time(field);
 }
 
-std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {
-  std::vector<Fields> rows;
-  for (const TextRecord& record : records) rows.push_back(fields_of(record.text, delimiter_of(separator)));
-  return rows;
-}
-
 std::size_t common_width(const std::vector<Fields>& rows) {
   std::map<std::size_t, std::size_t> widths;
   for (const Fields& row : rows) ++widths[row.size()];
   const auto common =
       std::max_element(widths.begin(), widths.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return common == widths.end() ? 0 : common->first;
+}
+
+/// The fields of each record. A separator at the end of all rows, or of the header alone, separates nothing.
+std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {
+  std::vector<Fields> rows;
+  for (const TextRecord& record : records) rows.push_back(fields_of(record.text, delimiter_of(separator)));
+  const std::size_t width = common_width(rows);
+  const bool ends = width > 2 && std::all_of(rows.begin(), rows.end(), [width](const Fields& row) {
+                      return row.size() != width || row.back().empty();
+                    });
+  for (Fields& row : rows)
+    if (row.size() > 1 && row.size() == (ends ? width : width + 1) && row.back().empty()) row.pop_back();
+  return rows;
 }
 
 /// Score of a separator. It counts two shares: rows with the most frequent width, and fields of these rows that are
@@ -66,7 +73,7 @@ double score(const std::vector<Fields>& rows) {
   std::size_t values = 0, fields = 0;
   for (const Fields& row : rows)
     for (const std::string& field : row) {
-      ++fields;
+      fields += &field == &row.back() && field.empty() ? 0 : 1;  // a missing last value says nothing
       values += is_value(field) ? 1 : 0;
     }
   return static_cast<double>(common) / static_cast<double>(rows.size()) +
@@ -174,6 +181,7 @@ CsvDialect find_dialect(std::string_view text, bool complete, const FormatOption
   dialect.comments = records.size() < all.size();
   dialect.separator = options.separator == Separator::automatic ? find_separator(records) : options.separator;
   const std::vector<Fields> rows = split(records, dialect.separator);
+  dialect.width = common_width(rows);
   dialect.decimal_comma = options.decimal == DecimalMark::comma ||
                           (options.decimal == DecimalMark::automatic && has_decimal_commas(rows, dialect.separator));
   const bool headless =

@@ -15,6 +15,7 @@ struct CsvDialect {
   bool decimal_comma = false;
   std::size_t header_rows = 1;     ///< number of rows (names, units) before the first row of numbers
   std::vector<std::string> names;  ///< column names if no row has them: names from a comment, or c1, c2, ...
+  std::size_t width = 0;           ///< number of fields in most rows, without an empty one at the end
   bool comments = false;           ///< whether the text has comments
   std::size_t skipped = 0;         ///< number of lines above the table
   std::string note;                ///< remark for the user; empty if the text is plain RFC 4180

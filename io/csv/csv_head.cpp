@@ -9,6 +9,7 @@
 #include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
 #include "io/table/name_unit.hpp"
+#include "io/table/time_unit.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -64,13 +65,19 @@ CsvHead read_csv_head(std::string_view file, std::string_view text, bool complet
     if (complete) pass.finish();
     if (sink.rows.empty()) throw ConfigurationError(no_header(file, head.dialect));
     head.names = sink.rows.front();
+    if (head.names.size() == head.dialect.width + 1 && head.names.back().empty()) head.names.pop_back();
     if (sink.rows.size() > 1 && head.dialect.header_rows > 1) head.units = sink.rows[1];
   }
   if (head.names.empty()) throw ConfigurationError(no_header(file, head.dialect));
   if (head.names.size() > most_csv_columns) throw DataError(fmt::format("{}: {}", file, too_many_columns()));
   head.units.resize(head.names.size());
-  for (std::size_t i = 0; i < head.names.size(); ++i)
+  for (std::size_t i = 0; i < head.names.size(); ++i) {
+    const auto named = named_time_unit(head.names[i]), stated = stated_time_unit(head.units[i]);
+    if (named && stated && *named != *stated && !head.units[i].empty())
+      head.contradiction = fmt::format("the name of {} says {}, but the units say {}, which is taken (data.time_unit)",
+                                       head.names[i], in_words(*named), in_words(*stated));
     head.units[i] = head.units[i].empty() ? split_unit(head.names[i]).unit : bare_unit(head.units[i]);
+  }
   return head;
 }
 

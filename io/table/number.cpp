@@ -53,7 +53,10 @@ ParsedNumber parse_number(std::string_view field) {
   if (number.size() > 1 && number[0] == '+' && number[1] != '-') number.remove_prefix(1);
   const auto [stop, error] = std::from_chars(number.data(), number.data() + number.size(), parsed.value);
   if (error == std::errc::invalid_argument) return parse_truth(number);
-  if (stop != number.data() + number.size()) return {0.0, NumberStatus::text};
+  const std::string_view rest(stop, static_cast<std::size_t>(number.data() + number.size() - stop));
+  for (const std::string_view word : {"#QNAN", "#SNAN", "#IND", "#INF"})  // 1.#QNAN, from C on Windows
+    if (rest.starts_with(word)) return {0.0, NumberStatus::missing};
+  if (!rest.empty()) return {0.0, NumberStatus::text};
   if (error == std::errc::result_out_of_range) return parse_extreme(number);
   if (!std::isfinite(parsed.value)) parsed.status = NumberStatus::missing;
   return parsed;
