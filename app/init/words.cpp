@@ -82,7 +82,7 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " clock ",     " time s ",  " t s ",     " header stamp ",  " time ns ",
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
-                                " date time ", " date ",    " elapsed ", " uptime "};
+                                " date time ", " date ",    " elapsed ", " uptime ",        " timestamps "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
                                " segment ", " sequence ", " file ",  " session ", " lap "};
 constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
@@ -147,7 +147,10 @@ NameScore score_name(std::string_view name, std::string_view type) {
   return score;
 }
 
-bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
+bool names_time(std::string_view name) {
+  const std::string words = words_of_name(name);
+  return ends_with_any(time_names, words) || words == " micros " || words == " millis ";
+}
 bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 
+#include "io/import/stamp_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -46,6 +47,16 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
     }
   }
   align_clocks(tables);
+  const auto names_runs = [](const SourcePlan& of) { return of.run.has_value(); };
+  for (std::size_t source = 0; source < tables.size(); ++source) {
+    if (std::any_of(plan.sources.begin(), plan.sources.end(), names_runs)) break;
+    const std::string note = count_on_restarts(tables[source].time_ns);
+    if (!note.empty() && plan.paths.size() > 1)
+      throw DataError(
+          fmt::format("{}: {}; write one file for each", plan.paths[plan.sources[source].path].string(), note));
+    if (!note.empty()) tables[source].time_s.clear();
+    if (!note.empty()) result.notes.push_back(note);
+  }
   for (std::size_t source = 0; source < plan.sources.size(); ++source) {
     const SourcePlan& of = plan.sources[source];
     const RowOrder order{tables[plan.states_clock], of.run, rate_hz};

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <utility>
 
 #include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
@@ -208,8 +209,24 @@ void StampColumn::decide_reading(Table& table) {
         fmt::format("column {} is read as {} (data.time_format)", request_.column, chosen.pattern.text()));
 }
 
+/// Whole numbers that fall by nearly 2^32 come from a counter of 32 bits.
+void StampColumn::unwrap(std::vector<std::string>& notes) {
+  constexpr std::int64_t turn = std::int64_t{1} << 32, longest_gap = turn / 16;
+  std::int64_t add = 0, before = 0;
+  for (std::size_t k = 0; k < stamps_.size(); ++k) {
+    if (std::isnan(as_written_[k])) continue;
+    const std::int64_t step = stamps_[k].whole - before + turn;
+    if (before < turn && step > 0 && step < longest_gap) add += turn;
+    before = std::exchange(stamps_[k].whole, stamps_[k].whole + add);
+    as_written_[k] += static_cast<double>(add);
+  }
+  if (add > 0)
+    notes.push_back(fmt::format("{} falls by 2^32, as a counter of 32 bits does, and is counted on", request_.column));
+}
+
 void StampColumn::finish(std::string_view file, Table& table) {
   if (kind_ == Kind::text) return decide_reading(table);
+  if (whole_numbers_ && request_.second.empty()) unwrap(table.notes);
   table.form = found_form(table.notes);
   StampForm& form = table.form;
   if (kind_ == Kind::unknown) form.ground = StampForm::Ground::none;

@@ -61,7 +61,8 @@ std::optional<TimeUnit> unit_of_epoch(const Numbers& numbers, bool whole) {
 }
 
 /// The unit of whole numbers. A robot samples at 0.1 Hz or faster, so numbers that differ by more than ten are not
-/// seconds, unless they are full minutes.
+/// seconds, unless they are full minutes. Those that differ by 1000 to 10,000 are microseconds of 100 Hz to 1 kHz, and
+/// not milliseconds of less than 1 Hz.
 /// A robot runs for less than ten days. A unit that gives more days is therefore rejected, unless the finer unit gives
 /// a sampling rate above 2 kHz.
 TimeUnit unit_of_spacing(const Numbers& numbers) {
@@ -71,7 +72,7 @@ TimeUnit unit_of_spacing(const Numbers& numbers) {
   double scale = 1e3;
   for (const TimeUnit unit : {TimeUnit::ms, TimeUnit::us}) {
     const bool too_long = numbers.size > longest_s * scale && numbers.spacing >= fastest_s * 1e3 * scale;
-    if (numbers.spacing <= slowest_s * scale && !too_long) return unit;
+    if (numbers.spacing <= (unit == TimeUnit::ms ? 1.0 : slowest_s) * scale && !too_long) return unit;
     scale *= 1e3;
   }
   return TimeUnit::ns;
