@@ -163,8 +163,10 @@ void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Gue
 
 void guess_states(std::vector<Candidate>& all, Guess& guess) {
   std::vector<Candidate> measured;
+  const auto commands = [](const Candidate& c) { return c.score.input >= 10; };
+  const bool commanded = std::any_of(all.begin(), all.end(), commands);  // then wheels are measured and no inputs
   for (const Candidate& c : all)
-    if (c.score.state >= c.score.input) measured.push_back(c);
+    if (c.score.state >= c.score.input || (commanded && c.score.state > 0)) measured.push_back(c);
   for (const Candidate* state : best_of(measured.empty() ? all : measured, &NameScore::state, 0, most_states))
     guess.states.push_back(state->place);
 }

@@ -91,16 +91,18 @@ std::size_t RowCollector::add_reader(const TopicDecoder& decoder) {
 
 void RowCollector::take(std::size_t reader, const RecordedMessage& message, const std::string& file) {
   const Reader& chosen = readers_[reader];
-  rows_.message.push_back(rows_.message.size() + 1);
-  receive_ns_.push_back(message.receive_ns);
+  ++messages_;
   const bool decoded =
       std::any_of(chosen.slots.begin(), chosen.slots.end(), [](auto slot) { return slot != receive_time; });
   try {
     if (decoded) chosen.messages.read(message.payload, row_);
   } catch (const PayloadError& error) {
-    throw DataError(fmt::format("{}:{}: topic {} ({}): the definition does not fit the message: {}", file,
-                                rows_.message.size(), topic_.name, topic_.type, error.what()));
+    throw DataError(fmt::format("{}:{}: topic {} ({}): the definition does not fit the message: {}", file, messages_,
+                                topic_.name, topic_.type, error.what()));
   }
+  if (lacks_all_names(chosen)) return;
+  rows_.message.push_back(messages_);
+  receive_ns_.push_back(message.receive_ns);
   for (std::size_t i = 0; i < chosen.slots.size(); ++i) {
     const std::size_t slot = chosen.slots[i];
     const Value& value = slot == receive_time ? time_value(message.receive_ns) : row_[slot];
@@ -109,9 +111,20 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
   }
 }
 
+/// Whether elements are requested by name, and the message has none of these names: it is another publisher's.
+bool RowCollector::lacks_all_names(const Reader& reader) const {
+  bool named = false;
+  for (std::size_t i = 0; i < reader.slots.size(); ++i) {
+    if (request_.columns[i].column.find('{') == std::string::npos) continue;
+    if (row_[reader.slots[i]].form != Value::Form::missing) return false;
+    named = true;
+  }
+  return named;
+}
+
 void RowCollector::append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file) {
   const auto fail = [&](const char* why) {
-    throw DataError(fmt::format("{}:{}: column {}: {}", file, rows_.message.size(), want.column, why));
+    throw DataError(fmt::format("{}:{}: column {}: {}", file, messages_, want.column, why));
   };
   const bool missing = value.form == Value::Form::missing;
   switch (want.form) {

@@ -30,12 +30,14 @@ class RowCollector {
     std::vector<std::size_t> slots;  ///< one for each requested column
   };
 
+  bool lacks_all_names(const Reader& reader) const;
   void append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file);
 
   const LogTopic& topic_;
   const LogRequest& request_;
   std::vector<Reader> readers_;
   std::vector<Value> row_;
+  std::uint64_t messages_ = 0;  ///< number of messages so far, also of those that are no rows
   std::vector<std::int64_t> receive_ns_;
   std::vector<std::size_t> rounded_;  ///< number of values that a double cannot represent exactly, for each requested
                                       ///< column

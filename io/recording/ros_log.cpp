@@ -44,12 +44,13 @@ std::unique_ptr<Container> open_container(const std::filesystem::path& path) {
   throw DataError(fmt::format("{}: not a recording of ROS (.bag, .mcap or .db3)", path.string()));
 }
 
-/// The first and the last message of each connection.
+/// The first messages and the last one of each connection.
 std::vector<std::vector<std::string>> take_samples(Container& container, std::vector<std::string>& notes) {
+  constexpr std::size_t most_samples = 10;  // publishers of one topic may send other names
   std::vector<std::vector<std::string>> samples(container.connections().size());
   std::string failure = container.sample([&](const RecordedMessage& message) {
     auto& own = samples[message.connection];
-    if (own.size() == 2)
+    if (own.size() == most_samples)
       own.back().assign(message.payload);
     else
       own.emplace_back(message.payload);
