@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "app/init/proposed_times.hpp"
+#include "app/init/together.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/natural_order.hpp"
@@ -380,6 +381,7 @@ void Proposal::set(const std::string& key, const std::string& value, const std::
 
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder) {
+  refuse_what_is_apart(surveyed, guess);
   return Proposer(sets, surveyed, guess).propose(config_folder);
 }
 

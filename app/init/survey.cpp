@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <set>
 
 #include "app/init/why_text.hpp"
 #include "app/init/words.hpp"
@@ -38,14 +39,14 @@ class TableSurvey {
         channel.counts = counts_up(channel.values);
       } else {
         channel.type = "text";
-        if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
-          channel.why_text = why_no_numbers(*texts);
+        if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i])) take_texts(*texts, channel);
       }
       if (auto* const numbers = std::get_if<std::vector<double>>(&columns_[i])) *numbers = {};
     }
     find_time(table);
     leave_out_unset(table);
     find_run(table);
+    follow_restarts(table);
     table.sampling = check_sampling(one_run(table));
     for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
     return table;
@@ -57,6 +58,14 @@ class TableSurvey {
   const TableInfo& info_;
   std::vector<FileColumn>& columns_;
   std::string time_problem_;
+
+  static void take_texts(const std::vector<std::string>& texts, SurveyedChannel& channel) {
+    channel.why_text = why_no_numbers(texts);
+    std::size_t changes = 0;
+    for (std::size_t k = 1; k < texts.size(); ++k) changes += texts[k] != texts[k - 1];
+    const std::set<std::string> words(texts.begin(), texts.end());
+    channel.alternates = words.size() > 1 && 10 * words.size() < texts.size() && 2 * changes > texts.size();
+  }
 
   /// The stamps of a column in seconds.
   static Eigen::VectorXd numbers_of(const FileColumn& column) {
@@ -271,6 +280,16 @@ class TableSurvey {
     return true;
   }
 
+  /// Does what import does where the clock starts again.
+  static void follow_restarts(SurveyedTable& table) {
+    if (!table.run.empty() || !table.time_s.allFinite()) return;
+    std::vector<std::int64_t> stamps;
+    for (const double time_s : table.time_s) stamps.push_back(std::llround(1e9 * time_s));
+    if (std::string note = count_on_restarts(stamps); !note.empty()) table.time_notes.push_back(std::move(note));
+    for (std::size_t k = 0; k < stamps.size(); ++k)
+      table.time_s(static_cast<Eigen::Index>(k)) = static_cast<double>(stamps[k]) / 1e9;
+  }
+
   static void leave_out_unset(SurveyedTable& table) {
     const auto kept = table.time_s.size() - static_cast<Eigen::Index>(table.unset_rows);
     table.time_s = table.time_s.tail(kept).eval();
@@ -355,14 +374,21 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   const std::shared_ptr<const TableReader> reader = open_table(path, surveyed_format());
   SurveyedFile file{path, {}, {}};
   const std::vector<TableInfo> tables = reader->tables();
-  FileColumns columns = read_columns(*reader, tables, [](const TableInfo&, const ColumnInfo& column) {
-    return column.type != "text";  // text columns are not surveyed further
+  FileColumns columns = read_columns(*reader, tables, [](const TableInfo& table, const ColumnInfo& column) {
+    const std::string named = column.name.substr(0, column.name.find('[')) + "{";  // velocity{left} names velocity[0]
+    const bool has_name = std::any_of(table.columns.begin(), table.columns.end(),
+                                      [&](const ColumnInfo& other) { return other.name.starts_with(named); });
+    return column.type != "text" && !has_name;  // text columns are not surveyed further
   });
   file.notes = std::move(columns.notes);
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));
   for (const TableInfo& table : tables) file.skipped = static_cast<std::size_t>(table.skipped);
+  const auto longest = std::max_element(tables.begin(), tables.end(),
+                                        [](const TableInfo& a, const TableInfo& b) { return a.rows < b.rows; });
   for (std::size_t i = 0; i < tables.size(); ++i)
-    if (columns.alternation[i].empty())
+    if (tables[i].type.empty() && 100 * tables[i].rows < longest->rows)
+      continue;  // such as the sizes of the arrays beside them
+    else if (columns.alternation[i].empty())
       file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());
     else
       file.notes.push_back("left out: " + columns.alternation[i]);

@@ -17,6 +17,7 @@ struct SurveyedChannel {
   std::string name, unit, type;
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN if missing; empty for a text column
+  bool alternates = false;      ///< for a text column: whether a few words take turns from row to row
   std::string why_text = {};    ///< for a text column that changes: the first value that is not a number
   bool counts = false;          ///< whether the values increase as clocks and counters do
   bool rests = false;           ///< whether the value is constant in every run
