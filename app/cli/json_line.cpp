@@ -24,7 +24,10 @@ std::string without_bare_nan(std::string_view line) {
       k += word;
       continue;
     }
-    if (line[k] == '"' && (k == 0 || line[k - 1] != '\\')) quoted = !quoted;
+    if (quoted && line[k] == '\\' && k + 1 < line.size())
+      result += line[k++];  // the next character is escaped
+    else if (line[k] == '"')
+      quoted = !quoted;
     result += line[k++];
   }
   return result;
