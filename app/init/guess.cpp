@@ -103,11 +103,19 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
 std::vector<const Candidate*> best_of(const std::vector<Candidate>& all, int NameScore::*points, int slack,
                                       std::size_t most) {
   const Candidate* best = nullptr;
+  const auto is_better = [&](const Candidate& c) {  // of equal ones in a table, the one that more rows have
+    const bool alike = c.score.*points == best->score.*points && same_table(c.place, best->place);
+    return c.score.*points > best->score.*points || (alike && c.channel->check.missing < best->channel->check.missing);
+  };
   for (const Candidate& c : all)
-    if (c.score.*points > 0 && (best == nullptr || c.score.*points > best->score.*points)) best = &c;
+    if (c.score.*points > 0 && (best == nullptr || is_better(c))) best = &c;
+  const auto share_rows = [](const SurveyedChannel& a, const SurveyedChannel& b) {
+    return (a.values.array().isFinite() && b.values.array().isFinite()).any();
+  };
   std::vector<const Candidate*> chosen;
   for (const Candidate& c : all)
     if (best != nullptr && same_table(c.place, best->place) && c.score.*points > 0 && chosen.size() < most &&
+        share_rows(*c.channel, *best->channel) &&
         (c.score.*points >= best->score.*points - slack ||
          (slack > 0 && c.named.*points >= best->named.*points - slack)))
       chosen.push_back(&c);
