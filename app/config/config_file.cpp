@@ -13,7 +13,6 @@
 #include "app/config/faults.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
-#include "app/config/options/gone_keys.hpp"
 #include "app/config/path_text.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"
@@ -52,8 +51,8 @@ void set_option(Config& config, const Option& option, const std::string& where, 
   } catch (const std::invalid_argument& error) {
     const std::string unit = option.unit.empty() ? "" : " [" + option.unit + "]";
     const std::string hint = has_comment ? "; # starts a comment, so a value cannot contain it" : "";
-    throw ConfigurationError(fmt::format("{}: {} = '{}' {}{}; allowed: {}{}{}", where, key, value, error.what(),
-                                         instead_of_gone(key, value), option.range, unit, hint));
+    throw ConfigurationError(
+        fmt::format("{}: {} = '{}' {}; allowed: {}{}{}", where, key, value, error.what(), option.range, unit, hint));
   }
 }
 
@@ -116,7 +115,6 @@ void apply_defaults_of_file(Config& config, const std::filesystem::path& path, O
 
 std::string nearest_key_hint(const std::string& key) {
   const std::string name = boost::trim_left_copy_if(key, boost::is_any_of("-"));
-  if (std::string instead = instead_of_gone(name); !instead.empty()) return instead;
   std::vector<std::string> keys;
   for (const Option& option : option_table()) keys.push_back(option.key);
   return did_you_mean(name, keys);
