@@ -78,27 +78,6 @@ def drive(modebank):
                         "--mixture.components", "4", "--mixture.restarts", "1")
 
 
-GUARD_BORDER = 0.4  # in units of the input; no input is within 0.1 of it
-
-
-def guard(modebank):
-    """A hybrid system of two modes, the second where u > GUARD_BORDER. Transitions learn this dependence."""
-    folder = modebank.work / "guard"
-    folder.mkdir(exist_ok=True)
-    generator = numpy.random.default_rng(1)
-    for run in range(4):
-        u, x = generator.normal(0, 1, 300), numpy.zeros(300)
-        u += numpy.where(abs(u - GUARD_BORDER) < 0.1, numpy.where(u > GUARD_BORDER, 0.1, -0.1), 0.0)
-        for k in range(299):
-            decay, gain, sd = (-0.1, -0.3, 0.1) if u[k] > GUARD_BORDER else (-0.5, 0.4, 0.05)
-            x[k + 1] = x[k] + decay * x[k] + gain * u[k] + sd * generator.normal()
-        numpy.savetxt(folder / f"run_{run}.csv", numpy.c_[0.1 * numpy.arange(300), x, u], "%.9g", ",", header="time,x,u", comments="")
-    config = folder / "guard.ini"
-    config.write_text("[data]\ninputs = run_*.csv\nstate = x\ninput = u\ninput_unit = m/s\ntime = time\ntrain = 0, 1\ntest = 2, 3\n"
-                      "[window]\nmodel = linear\n[mixture]\ncomponents = 2\nrestarts = 2\n[bank]\ntransition = logit\n", encoding="utf-8")
-    return modebank.run("guard", config, "--data.root", folder)
-
-
 def hostile(modebank):
     """Two runs in one file with names, channels and units that attack a page."""
     folder = modebank.work / "hostile"

@@ -32,7 +32,6 @@ class Made(dict):
         "none_held_out": lambda name: archives.demo(modebank, data, name, "--data.train", ",".join(f"{run:02d}" for run in range(12))),
         "windows_only": lambda name: archives.demo(modebank, data, name, command="identify"),
         "hostile": lambda _: archives.hostile(modebank),
-        "guard": lambda _: archives.guard(modebank),
         "study": lambda _: archives.study(modebank, data),
         "large_study": lambda _: archives.large_study(modebank),
     }

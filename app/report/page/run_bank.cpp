@@ -2,7 +2,6 @@
 
 #include <algorithm>
 
-#include "app/report/page/mode_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_families.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -194,7 +193,6 @@ nlohmann::json bank_section(const Archive& archive) {
           {"transition", transition_of(bank)},
           {"folded", folded_transition_of(bank, families)},
           {"switch_weights", switch_weights_of(bank)},
-          {"modeMap", mode_map_of(archive)},
           {"confusion", label_section(archive, families)},
           {"screened", screened_of(bank)},
           {"merged", merging_of(archive, role)},

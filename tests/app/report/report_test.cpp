@@ -8,7 +8,6 @@
 #include "app/config/config_file.hpp"
 #include "app/report/page/folded_transition.hpp"
 #include "app/report/page/html_page.hpp"
-#include "app/report/page/mode_map.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -308,50 +307,6 @@ TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
   ASSERT_EQ(joined.rows(), 2) << "no mode is left over";
   EXPECT_NEAR(joined(0, 1), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
   EXPECT_NEAR(joined(1, 0), 0.1, 1e-15);
-}
-
-/// With two modes p0 T01 = p1 T10. The weights change the odds of T01 and T10.
-TEST(ReportGuard, SharesAreThoseThatStandStill) {
-  Bank bank;
-  bank.structure = {1, 1, false};
-  bank.modes.resize(2);
-  bank.transition = TransitionMatrix(Eigen::MatrixXd{{0.9, 0.1}, {0.3, 0.7}});
-  bank.transition_logit = {Eigen::MatrixXd{{0.0, 0.0}, {2.0, -1.0}}, Eigen::Vector2d(0.5, 0.0)};
-  const Eigen::Vector2d z(0.8, 0.2);
-  const double odds = std::exp(2.0 * 0.3 - 0.2), T01 = 0.1 * odds / (0.9 + 0.1 * odds), T10 = 0.3 / (0.3 + 0.7 * odds);
-  const Eigen::VectorXd shares = app::report::settled_shares(bank, z);
-  EXPECT_NEAR(shares(0), T10 / (T01 + T10), 1e-12);
-  EXPECT_NEAR(shares.sum(), 1.0, 1e-12);
-}
-
-TEST_F(Report, DrawsTheGuardOfSwitchesThatSeeStateAndInput) {
-  ASSERT_EQ(run().status, 0);
-  Archive stored = read_archive(archive());
-  EXPECT_TRUE(app::report::mode_map_of(stored).is_null());
-  ASSERT_GT(stored.noise_only->mode_count(), 1);
-  stored.bank = stored.noise_only;  // noise_only has several modes
-  std::vector<FilterEvaluation> evaluations;
-  for (const FilterEvaluation& evaluation : stored.evaluations)
-    if (evaluation.filter == "noise_only") evaluations.push_back(evaluation);
-  ASSERT_EQ(evaluations.size(), 1u);
-  evaluations[0].filter = "bank";
-  stored.evaluations = evaluations;
-  Bank& bank = *stored.bank;
-  const Index K = bank.mode_count(), d = bank.structure.dimension() + bank.structure.acting_inputs();
-  for (const bool one : {true, false}) {
-    bank.transition_logit = {Eigen::MatrixXd::Zero(K, d), Eigen::VectorXd::Zero(d)};
-    bank.transition_logit.weights(0, 0) = 10.0;
-    if (!one) bank.transition_logit.weights(1, d - 1) = -10.0;
-    const json map = app::report::mode_map_of(stored);
-    ASSERT_FALSE(map.is_null());
-    EXPECT_EQ(map["one"], one);
-    ASSERT_EQ(map["axes"].size(), one ? 1u : 2u);
-    EXPECT_EQ(map["samples"]["at"][0].size(), map["samples"]["mode"].size());
-    EXPECT_GT(map["samples"]["mode"].size(), 100u);
-    const json& grid = map[one ? "lines" : "modes"];
-    EXPECT_EQ(grid.size(), one ? static_cast<std::size_t>(K) : map["axes"][1]["values"].size());
-    EXPECT_EQ(grid[0].size(), map["axes"][0]["values"].size());
-  }
 }
 
 TEST_F(Report, EarlierStagesAlone) {

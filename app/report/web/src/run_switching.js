@@ -3,7 +3,6 @@ import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {transitionGraph} from './graph.js';
 import {modeColour, palette} from './look.js';
-import {modeMapFigure} from './mode_map.js';
 import {modeCell, modeTitle} from './mode_names.js';
 import {familiesOf, othersName} from './modes.js';
 import {table} from './table.js';
@@ -54,17 +53,11 @@ function switchWeights(weights) {
   return table(columns, rows, {caption: 'Log odds per unit of state and input'});
 }
 
-function switchMap(bank) {
-  if (!bank.modeMap) return null;
-  return [h('h3', {}, 'Which states and inputs belong to which mode'), modeMapFigure(bank)];
-}
-
 export function switching(bank) {
   if (bank.modes.length < 2) return note('There is one mode, so there are no switches.');
   const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
   const folded = bank.folded.length < bank.modes.length;
   return [
-    switchMap(bank),
     h('h3', {}, 'How modes follow each other'),
     folded ? h('p', {class: 'caption'},
                'Modes of one family are one node, and so are all that are hardly used; the matrix has each mode.') :
