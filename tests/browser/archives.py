@@ -4,7 +4,6 @@ import pathlib
 import random
 import subprocess
 
-import numpy
 
 # Without refinement, which takes long and adds no kind of number to a page.
 QUICK = ("--bank.refine", "none")
