@@ -284,10 +284,10 @@ class TableSurvey {
   static void follow_restarts(SurveyedTable& table) {
     if (!table.run.empty() || !table.time_s.allFinite()) return;
     std::vector<std::int64_t> stamps;
-    for (const double time_s : table.time_s) stamps.push_back(std::llround(1e9 * time_s));
+    for (const double time_s : table.time_s) stamps.push_back(table.origin_ns + std::llround(1e9 * time_s));
     if (std::string note = count_on_restarts(stamps); !note.empty()) table.time_notes.push_back(std::move(note));
     for (std::size_t k = 0; k < stamps.size(); ++k)
-      table.time_s(static_cast<Eigen::Index>(k)) = static_cast<double>(stamps[k]) / 1e9;
+      table.time_s(static_cast<Eigen::Index>(k)) = static_cast<double>(stamps[k] - table.origin_ns) / 1e9;
   }
 
   static void leave_out_unset(SurveyedTable& table) {

@@ -51,16 +51,19 @@ std::size_t common_width(const std::vector<Fields>& rows) {
   return common == widths.end() ? 0 : common->first;
 }
 
-/// The fields of each record. A separator at the end of all rows, or of the header alone, separates nothing.
+/// The fields of each record. A separator at the end of all rows below the header, or of the header alone, separates
+/// nothing.
 std::vector<Fields> split(const std::vector<TextRecord>& records, Separator separator) {
   std::vector<Fields> rows;
   for (const TextRecord& record : records) rows.push_back(fields_of(record.text, delimiter_of(separator)));
   const std::size_t width = common_width(rows);
-  const bool ends = width > 2 && std::all_of(rows.begin(), rows.end(), [width](const Fields& row) {
-                      return row.size() != width || row.back().empty();
-                    });
+  bool header = false, ends = width > 2;
+  for (const Fields& row : rows) {
+    header = header || row.size() + 1 == width;
+    ends = ends && (row.size() != width || row.back().empty());
+  }
   for (Fields& row : rows)
-    if (row.size() > 1 && row.size() == (ends ? width : width + 1) && row.back().empty()) row.pop_back();
+    if (row.size() > 1 && row.size() == (header && ends ? width : width + 1) && row.back().empty()) row.pop_back();
   return rows;
 }
 
@@ -152,8 +155,8 @@ std::size_t lines_above_table(std::string_view text, bool complete, const Format
   const std::vector<TextRecord> second_half(records.begin() + std::ssize(records) / 2, records.end());
   const Separator separator =
       options.separator == Separator::automatic ? find_separator(second_half) : options.separator;
-  const std::size_t width = common_width(split(second_half, separator));
   const std::vector<Fields> rows = split(records, separator);
+  const std::size_t width = common_width({rows.begin() + std::ssize(rows) / 2, rows.end()});
   if (width < 2 || rows.front().size() == width) return 0;
   for (std::size_t first = 1; first + names_and_units < rows.size(); ++first) {
     const std::size_t end = std::min(first + alike, rows.size());

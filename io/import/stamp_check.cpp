@@ -84,15 +84,15 @@ std::size_t rows_before_clock_was_set(const std::vector<std::int64_t>& stamps_ns
 }
 
 std::string count_on_restarts(std::vector<std::int64_t>& stamps_ns) {
-  constexpr std::size_t fewest = 10;  // rows on both sides
-  constexpr double near_start = 0.02, longest_ns = 1e17;
+  constexpr std::size_t fewest = 10;                      // rows on both sides
+  constexpr double near_start = 0.02, longest_ns = 1e17;  // later stamps are dates, which do not start again
   const std::vector<double> times(stamps_ns.begin(), stamps_ns.end());
   std::string note;
   for (std::size_t first = 0, k = fewest; k + fewest <= times.size(); ++k) {
     const auto row = times.begin() + static_cast<std::ptrdiff_t>(k), end = row + fewest;
     const double span = row[-1] - times[first];
     const bool falls = *row < row[-1] && std::abs(*row - times[first]) <= near_start * span && span < longest_ns;
-    if (k < first + fewest || !falls || end[-1] - *row > span) continue;
+    if (k < first + fewest || !falls || times[first] > longest_ns || end[-1] - *row > span) continue;
     if (std::adjacent_find(row, end, std::greater_equal<>()) != end) continue;
     note = fmt::format("the clock starts again{}; what follows is a run of its own",
                        note.empty() ? fmt::format(" in row {}", k + 1) : ", more than once");

@@ -223,8 +223,10 @@ TEST_F(Hdf5Files, OfAForeignFilterSayHowToWriteThem) {
   const hid_t data = H5Dcreate2(id, "v", H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, made, H5P_DEFAULT);
   const hsize_t first = 0;
   H5Dwrite_chunk(data, H5P_DEFAULT, 0, &first, sizeof(values), values);
-  for (const auto close : {std::pair(data, H5Dclose), {made, H5Pclose}, {space, H5Sclose}, {id, H5Fclose}})
-    close.second(close.first);
+  H5Dclose(data);
+  H5Pclose(made);
+  H5Sclose(space);
+  H5Fclose(id);
   const auto store = open_hdf5_columns(file);
   EXPECT_THAT(message_of<DataError>([&] { numbers(*store, "v"); }), HasSubstr("filter 32001"));
 }
