@@ -7,7 +7,7 @@ import unittest
 import numpy as np
 
 import program
-from program import ProgramTest, arrays, demo, modebank, rows, write_runs
+from program import ProgramTest, arrays, demo, learn, modebank, slices
 
 # Reads samples (time, inputs, measurements) and prints what the filter says of each.
 DRIVER = r"""#include "robot.h"
@@ -30,6 +30,7 @@ int main(void) {
   }
 }
 """
+COMPILER = "gcc -std=c99 -Wall -Wextra -Werror -o driver driver.c robot.c -lm"
 SAID = ("prediction", "state", "innovation_covariance", "mode_probability", "log_density")
 
 
@@ -37,13 +38,11 @@ class Export(ProgramTest):
     def check_c(self, archive, *words):
         modebank("export", archive, "--to", "c", "-o", "robot.c", *words, cwd=self.folder)
         (self.folder / "driver.c").write_text(DRIVER)
-        compiler = "gcc -std=c99 -Wall -Wextra -Werror -o driver driver.c robot.c -lm"
-        subprocess.run(compiler.split(), cwd=self.folder, check=True)
+        subprocess.run(COMPILER.split(), cwd=self.folder, check=True)
         data, bank = arrays(archive, "/data"), arrays(archive, "/evaluation/bank")
         samples = np.column_stack([data["time"], data["input"], data["state"]])
         expected = np.column_stack([bank[name].reshape(len(samples), -1) for name in SAID])
-        for run in rows(data["runs"], role="test"):
-            place = slice(run["first"], run["first"] + run["samples"])
+        for place in slices(archive, role="test").values():
             lines = " ".join(map(repr, samples[place].ravel().tolist()))
             done = subprocess.run(self.folder / "driver", input=lines, capture_output=True, text=True, check=True)
             np.testing.assert_allclose(np.array(done.stdout.split(), float), expected[place].ravel(), 1e-9, 1e-10)
@@ -51,16 +50,14 @@ class Export(ProgramTest):
     @unittest.skipUnless(shutil.which("gcc"), "gcc is absent: apt-get install gcc")
     def test_c_filters_as_evaluated(self):
         self.check_c(demo() / "demo.h5")
-        write_runs(self.folder, states=("wz", "vx"))
-        modebank("run", "test.ini", "--bank.measurement_variance", "1e-5", cwd=self.folder)
+        learn(self.folder, "--bank.measurement_variance", "1e-5", states=("wz", "vx"))
         modebank("export", "test.h5", "--to", "c", "-o", "none.c", cwd=self.folder, status=1)  # its band is too wide
         self.assertFalse((self.folder / "none.c").exists())
         self.check_c(self.folder / "test.h5", "--force")
 
     def test_json_is_the_archives_bank(self):
-        archive, file = demo() / "demo.h5", self.folder / "bank.json"
-        modebank("export", archive, "--to", "json", "-o", file)
-        page, bank = json.loads(file.read_text()), arrays(archive, "/bank")
+        modebank("export", demo() / "demo.h5", "--to", "json", "-o", self.folder / "bank.json")
+        page, bank = json.loads((self.folder / "bank.json").read_text()), arrays(demo() / "demo.h5", "/bank")
         said = {name: page[name]["value"] for name in "CR"} | {"transition": page["transition"]["T"]}
         said |= {name: [mode[name]["value"] for mode in page["modes"]] for name in "ABcQ"}
         bank["A"] += np.eye(bank["A"].shape[-1])  # archives hold the increment of a step

@@ -5,7 +5,6 @@ of `modebank demo`, which CTest makes once (`program.py FOLDER`); without it eac
 not write into that folder.
 """
 import atexit
-import collections
 import functools
 import json
 import os
@@ -16,12 +15,11 @@ import sys
 import tempfile
 import unittest
 
-REQUIRED = os.environ.get("CI") == "true" or os.environ.get("MODEBANK_NIGHTLY") == "1"  # nothing may be absent
 try:
     import h5py
     import numpy as np
 except ImportError as missing:
-    if REQUIRED:
+    if os.environ.get("CI") == "true" or os.environ.get("MODEBANK_NIGHTLY") == "1":  # nothing may be absent
         raise
     print(f"SKIPPED: Python has no module {missing.name} (Debian: python3-h5py, python3-numpy)")
     sys.exit(77)
@@ -29,38 +27,40 @@ except ImportError as missing:
 PROGRAM = os.environ["MODEBANK_PROGRAM"]
 SOURCE = pathlib.Path(os.environ.get("MODEBANK_SOURCE", pathlib.Path(__file__).resolve().parents[2]))
 DATA = pathlib.Path(os.environ.pop("MODEBANK_DATA", SOURCE.parent / "shared/data"))  # the program is told by data.root
-TIMEOUT_S = 200
-Done = collections.namedtuple("Done", "out err status")
 
 
 def modebank(*words, cwd=None, input=None, status=0, env=None):
-    """Runs the program: its output, its messages and its exit status, which must be `status` (None: any)."""
+    """Runs the program, whose exit status must be `status`. Its output and its messages are stdout and stderr."""
     done = subprocess.run([PROGRAM, *map(str, words)], cwd=cwd, input=input, env=dict(os.environ, **env or {}),
-                          capture_output=True, text=True, timeout=TIMEOUT_S)
-    if status is not None and done.returncode != status:
+                          capture_output=True, text=True, timeout=200)
+    if done.returncode != status:
         raise AssertionError(f"{words}: exit status {done.returncode}, not {status}\n{done.stdout}{done.stderr}")
-    return Done(done.stdout, done.stderr, done.returncode)
+    return done
 
 
 def facts(*words, **options):
     """The JSON object that the command prints with --json."""
-    return json.loads(modebank(*words, "--json", **options).out)
+    return json.loads(modebank(*words, "--json", **options).stdout)
+
+
+def new_folder(cleanup):
+    """An empty folder, which `cleanup` is told to remove."""
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
+    cleanup(shutil.rmtree, folder)
+    return folder
 
 
 def make_demo(parent):
     """The folder `demo` in `parent`, and beside it what the command printed, demo.json."""
-    pathlib.Path(parent, "demo.json").write_text(modebank("demo", "-o", pathlib.Path(parent, "demo"), "--json").out)
+    pathlib.Path(parent, "demo.json").write_text(modebank("demo", "-o", pathlib.Path(parent, "demo"), "--json").stdout)
     return pathlib.Path(parent, "demo")
 
 
 @functools.lru_cache
 def demo():
     """The folder of the demo: demo.h5, demo.ini, simulate_demo.ini and data/."""
-    if "MODEBANK_DEMO" in os.environ:
-        return pathlib.Path(os.environ["MODEBANK_DEMO"])
-    parent = tempfile.mkdtemp(prefix="modebank-program-test-")
-    atexit.register(shutil.rmtree, parent)
-    return make_demo(parent)
+    made = os.environ.get("MODEBANK_DEMO")
+    return pathlib.Path(made) if made else make_demo(new_folder(atexit.register))
 
 
 def arrays(archive, path="/"):
@@ -77,20 +77,30 @@ def attributes(archive, path="/"):
         return {name: value.decode() if isinstance(value, bytes) else value for name, value in file[path].attrs.items()}
 
 
-def write_runs(folder, samples=120, states=("wz",)):
+def write_csv(path, header, *columns, separator=",", decimal="."):
+    lines = [header, *zip(*(np.asarray(column).tolist() for column in columns))]
+    path.write_text("".join(separator.join(str(x).replace(".", decimal) for x in line) + "\n" for line in lines))
+
+
+def write_runs(folder, samples=120, states=("wz",), memory=0.6, grips=(0.6, 0.2), stretch=20, holes=False):
     """Two runs of a vehicle that slips at times, run_00.csv and (held out) run_01.csv, and their test.ini."""
     for run in (0, 1):
-        draw = np.random.default_rng(run + 1)
+        draw, k = np.random.default_rng(run + 1), np.arange(samples)
         u, x = draw.uniform(-0.5, 0.5, (samples, 2)), np.zeros((samples, len(states)))
-        for k in range(samples - 1):
-            grip = 0.2 if k // 20 % 2 else 0.6
-            x[k + 1] = 0.6 * x[k] + grip * (u[k, 1] - u[k, 0]) + draw.uniform(-0.005, 0.005, len(states))
-        lines = [",".join(map(repr, (k / 10, *x[k].tolist(), *u[k].tolist()))) for k in range(samples)]
-        header = ",".join(("time", *states, "left", "right"))
-        pathlib.Path(folder, f"run_{run:02}.csv").write_text("\n".join([header, *lines, ""]))
-    pathlib.Path(folder, "test.ini").write_text(
-        f"[data]\ninputs = run_*.csv\nstate = {', '.join(states)}\ninput = left, right\n"
-        "[window]\nmodel = linear\n[mixture]\ncomponents = 1..2\n")
+        for i, grip in enumerate(np.take(grips, k[:-1] // stretch % 2)):
+            x[i + 1] = memory * x[i] + grip * (u[i, 1] - u[i, 0]) + draw.uniform(-0.005, 0.005, len(states))
+        values = [np.where(holes & (k > 9) & (k % 7 == place), "", column.astype(str))
+                  for place, column in enumerate([*x.T, *u.T])]
+        write_csv(folder / f"run_{run:02}.csv", ("time", *states, "left", "right"), k / 10, *values)
+    (folder / "test.ini").write_text(f"[data]\ninputs = run_*.csv\nstate = {', '.join(states)}\ninput = left, right\n"
+                                     "[window]\nmodel = linear\n[mixture]\ncomponents = 1..2\n")
+
+
+def learn(folder, *words, **options):
+    """The archive of such runs."""
+    write_runs(folder, **options)
+    modebank("run", "test.ini", "--force", *words, cwd=folder)
+    return folder / "test.h5"
 
 
 def differing(first, second):
@@ -108,17 +118,24 @@ def rows(table, **values):
     return table[keep]
 
 
+def slices(archive, **values):
+    """{run: its samples} of an archive, as rows() chooses them: slices(archive, role="test")."""
+    return {run["name"].decode(): slice(run["first"], run["first"] + run["samples"])
+            for run in rows(arrays(archive, "/data")["runs"], **values)}
+
+
 class ProgramTest(unittest.TestCase):
-    """A test with a folder of its own, `self.folder`, which goes afterwards."""
+    """A test with a folder of its own, `self.folder`, and one of its class, `self.place`, which go afterwards."""
+    @classmethod
+    def setUpClass(cls):
+        cls.place = new_folder(cls.addClassCleanup)
+
     def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
-        self.addCleanup(shutil.rmtree, self.folder)
+        self.folder = new_folder(self.addCleanup)
 
 
-def main():
-    unittest.main(verbosity=2)  # prints the reasons of skipped tests
+main = functools.partial(unittest.main, verbosity=2)  # prints the reasons of skipped tests
 
 
 if __name__ == "__main__":
-    os.makedirs(sys.argv[1], exist_ok=True)
     make_demo(sys.argv[1])

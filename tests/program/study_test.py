@@ -1,11 +1,8 @@
 """A study: its trials are single runs to the bit, whatever stops, shares, damages or submits it."""
 import csv
 import os
-import pathlib
-import shutil
 import signal
 import subprocess
-import tempfile
 import time
 
 import program
@@ -33,10 +30,9 @@ class Study(ProgramTest):
     """Something disturbs the study `other` in each test. Its table and archives must be those of `whole`."""
     @classmethod
     def setUpClass(cls):
-        cls.data = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
-        cls.addClassCleanup(shutil.rmtree, cls.data)
-        write_runs(cls.data)
-        cls.whole = cls.data / "whole"
+        super().setUpClass()
+        write_runs(cls.place)
+        cls.whole = cls.place / "whole"
         modebank(*cls.words(cls.whole))
 
     def setUp(self):
@@ -45,7 +41,7 @@ class Study(ProgramTest):
 
     @classmethod
     def words(cls, study, *options):
-        return ("study", cls.data / "test.ini", *VARIED, "--study.output", study, "--bank.refine", "none", *options)
+        return ("study", cls.place / "test.ini", *VARIED, "--study.output", study, "--bank.refine", "none", *options)
 
     def study(self, *options, **more):
         modebank(*self.words(self.other, *options), **more)
@@ -62,8 +58,8 @@ class Study(ProgramTest):
     def test_trials_are_single_runs(self):
         run, (header, *table) = self.folder / "run.h5", lines(self.whole / "study.csv")
         for trial in (dict(zip(header, line)) for line in table):
-            keys = [word for key in KEYS for word in ("--" + key, trial[key])]
-            modebank("run", self.data / "test.ini", "--bank.refine", "none", *keys, "--archive.output", run, "--force")
+            keys = [f"--{key}={trial[key]}" for key in KEYS]
+            modebank("run", self.place / "test.ini", "--bank.refine=none", *keys, "--archive.output", run, "--force")
             self.assertEqual(differing(run, self.whole / "trials" / (trial["key"] + ".h5")), [])
             for row in rows(arrays(run, "/evaluation")["summary"], run="*"):
                 name = f"{row['filter'].decode()}_{row['role'].decode()}_log_score"
@@ -73,16 +69,23 @@ class Study(ProgramTest):
         self.assertEqual(score, max(float(line[header.index("bank_test_log_score")]) for line in table))
 
     def test_goes_on_after_a_kill_and_makes_nothing_twice(self):
+        """A trial that was damaged meanwhile is told by `verify` and is made again, alone."""
         killed = self.start("--study.jobs", "1")
         while not trials(self.other):
             self.assertIsNone(killed.poll(), "the study ended without a trial")
             time.sleep(0.001)
         os.killpg(killed.pid, signal.SIGKILL)
         killed.wait()
-        for _ in "after the kill", "when all is done":
-            before = identities(self.other)
-            self.study()
-            self.assertLessEqual(before.items(), identities(self.other).items())
+        before = identities(self.other)
+        self.study()
+        whole, damaged = identities(self.other), trials(self.other)[1]
+        self.assertLessEqual(before.items(), whole.items())
+        content = bytearray(damaged.read_bytes())
+        content[5000] ^= 16
+        damaged.write_bytes(content)
+        self.assertIn(damaged.stem, modebank("verify", self.other, status=1).stdout)
+        self.study()
+        self.assertEqual({path for path, _ in whole.items() - identities(self.other).items()}, {damaged})
         self.check()
 
     def test_processes_share_the_work(self):
@@ -90,17 +93,6 @@ class Study(ProgramTest):
         self.assertEqual([process.wait() for process in processes], [0, 0, 0])
         made = [line[3] for line in lines(self.other / "log.csv") if line[4] == "done"]
         self.assertEqual(sorted(made), [path.stem for path in trials(self.whole)])
-        self.check()
-
-    def test_a_damaged_trial_is_made_again(self):
-        self.study()
-        before, damaged = identities(self.other), trials(self.other)[1]
-        content = bytearray(damaged.read_bytes())
-        content[5000] ^= 16
-        damaged.write_bytes(content)
-        self.assertIn(damaged.stem, modebank("verify", self.other, status=1).out)
-        self.study()
-        self.assertEqual({path for path, _ in before.items() - identities(self.other).items()}, {damaged})
         self.check()
 
     def test_slurm_gets_an_array_and_a_merge(self):
@@ -116,8 +108,8 @@ class Study(ProgramTest):
         self.study("--study.stage", "merge", status=1)
         self.assertEqual(trials(self.other), [])  # nothing is made here
         for script, task in ((array, "1"), (array, "0"), (merge, "")):
-            task = dict(os.environ, SLURM_ARRAY_TASK_ID=task)
-            subprocess.run(["bash", script.split()[-1]], env=task, check=True, **QUIET)
+            environment = dict(os.environ, SLURM_ARRAY_TASK_ID=task)
+            subprocess.run(["bash", script.split()[-1]], env=environment, check=True, **QUIET)
         self.check()
 
 
