@@ -2,8 +2,7 @@
 import json
 import shutil
 
-import program
-from program import ProgramTest, learn, modebank, write_runs
+from program import ProgramTest, learn, main, modebank, write_runs
 
 RUN = ("run", "test.ini", "--archive.output", "out.h5")
 STILL = ["time,wz,left,right", *(f"{k / 10},0.3,{k % 7},{k % 5}" for k in range(80))]  # the state is constant
@@ -90,4 +89,4 @@ class Mistakes(ProgramTest):
 
 
 if __name__ == "__main__":
-    program.main()
+    main()

@@ -112,10 +112,7 @@ def differing(first, second):
 
 def rows(table, **values):
     """Rows of a table whose columns have these values: rows(summary, filter="bank", run="*")."""
-    keep = np.ones(len(table), bool)
-    for column, value in values.items():
-        keep &= table[column] == (value.encode() if isinstance(value, str) else value)
-    return table[keep]
+    return table[[all(value in (row[name], row[name].decode()) for name, value in values.items()) for row in table]]
 
 
 def slices(archive, **values):

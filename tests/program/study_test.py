@@ -5,8 +5,7 @@ import signal
 import subprocess
 import time
 
-import program
-from program import PROGRAM, ProgramTest, arrays, differing, modebank, rows, write_runs
+from program import PROGRAM, ProgramTest, arrays, differing, main, modebank, rows, write_runs
 
 KEYS = ("mixture.components", "filter.variant")
 QUIET = {"stdout": subprocess.DEVNULL, "stderr": subprocess.DEVNULL}
@@ -114,4 +113,4 @@ class Study(ProgramTest):
 
 
 if __name__ == "__main__":
-    program.main()
+    main()
