@@ -2,17 +2,13 @@
 import json
 import math
 import os
-import pathlib
 import statistics
 import unittest
 
-import numpy as np
-
 import program
-from program import SOURCE, ProgramTest, arrays, modebank, rows
+from program import DATA, SOURCE, ProgramTest, arrays, modebank, np, rows
 
 GOLDEN = SOURCE / "tests/golden/data"
-DATA = pathlib.Path(os.environ.get("MODEBANK_DATA") or SOURCE.parent / "shared/data")
 QUICK = ("--mixture.components=1", "--bank.refine=none", "--filter.horizon=1", "--window.step=5")
 
 
