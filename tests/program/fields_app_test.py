@@ -11,7 +11,7 @@ import unittest
 try:
     import numpy as np
 except ImportError:
-    if os.environ.get("CI") == "true" or os.environ.get("MODEBANK_NIGHTLY") == "1":
+    if os.environ.get("CI") == "true":
         raise
     print("SKIPPED: Python has no module numpy (Debian: python3-numpy)")
     sys.exit(77)
