@@ -8,7 +8,7 @@ namespace modebank::app {
 
 /// Properties of standard output.
 struct Terminal {
-  int width = 0;      ///< number of columns; 0 means no limit, for a file or a pipe without COLUMNS
+  int width = 0;  ///< number of columns; 0 means no limit, for a file or a pipe without COLUMNS
 };
 
 /// COLUMNS overrides the terminal's own width.
