@@ -1,5 +1,7 @@
 #!/usr/bin/env python3
 """The ratchet in small repositories: a room that grows, a table that is raised, a table that is left slack."""
+import contextlib
+import io
 import os
 import pathlib
 import subprocess
@@ -39,7 +41,8 @@ class Ratchet(unittest.TestCase):
         self.git("commit", "-q", "--allow-empty", "-m", "a change")
 
     def offences(self):
-        return house.offences(self.root)
+        with contextlib.redirect_stdout(io.StringIO()):  # what it skips here is no skipped test
+            return house.offences(self.root)
 
     def test_a_room_that_shrinks_or_stays_under_its_aim_passes(self):
         for lines in (AIM + 90, AIM + 90, AIM + 20, 30, AIM):
