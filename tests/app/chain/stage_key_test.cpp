@@ -199,6 +199,8 @@ const std::vector<RuledOut> ruled_out{
     {"window.input_delay", "need model = varx"},
     {"bank.transition", "bank.transition = logit"},
     {"bank.drift", "bank.drift = "},
+    {"bank.noise", "does not work with bank.refine = em"},
+    {"bank.refine", "does not work with bank.refine = em"},
     {"window.model", "bank.drift = auto needs"},
     {"bank.refine", "bank.drift = auto is learned by refinement"},
     {"bank.measurement_variance", "bank.drift = auto needs"},
