@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <utility>
 
 #include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
@@ -211,16 +210,17 @@ void StampColumn::decide_reading(Table& table) {
 
 /// Whole numbers that fall by nearly 2^32 come from a counter of 32 bits.
 void StampColumn::unwrap(std::vector<std::string>& notes) {
-  constexpr std::int64_t turn = std::int64_t{1} << 32, longest_gap = turn / 16;
-  std::int64_t add = 0, before = 0;
+  constexpr double turn = 0x1p32;
+  double add = 0.0, before = 0.0;
   for (std::size_t k = 0; k < stamps_.size(); ++k) {
-    if (std::isnan(as_written_[k])) continue;
-    const std::int64_t step = stamps_[k].whole - before + turn;
-    if (before < turn && step > 0 && step < longest_gap) add += turn;
-    before = std::exchange(stamps_[k].whole, stamps_[k].whole + add);
-    as_written_[k] += static_cast<double>(add);
+    const double value = as_written_[k], step = value - before + turn;
+    if (!(std::abs(value) < turn)) continue;  // missing, or more than 32 bits
+    if (step > 0.0 && step < turn / 16.0) add += turn;
+    before = value;
+    stamps_[k].whole += static_cast<std::int64_t>(add);
+    as_written_[k] += add;
   }
-  if (add > 0)
+  if (add > 0.0)
     notes.push_back(fmt::format("{} falls by 2^32, as a counter of 32 bits does, and is counted on", request_.column));
 }
 
