@@ -1,22 +1,9 @@
 """Logs and mistakes of the field: which columns `init` takes and names, which files stay, what sbatch may print."""
 import json
 import os
-import pathlib
 import shutil
-import subprocess
-import sys
-import tempfile
-import unittest
 
-try:
-    import numpy as np
-except ImportError:
-    if os.environ.get("CI") == "true":
-        raise
-    print("SKIPPED: Python has no module numpy (Debian: python3-numpy)")
-    sys.exit(77)
-
-PROGRAM = os.environ["MODEBANK_PROGRAM"]
+from program import ProgramTest, main, modebank, np
 
 
 def plant(samples=600, seed=1):
@@ -28,15 +15,9 @@ def plant(samples=600, seed=1):
     return 0.05 * np.arange(samples), u, x
 
 
-class FieldTest(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))
-        self.addCleanup(shutil.rmtree, self.folder)
-
-    def run_program(self, *words, status=0, env=None):
-        done = subprocess.run([PROGRAM, *map(str, words)], cwd=self.folder, env=dict(os.environ, **env or {}),
-                              capture_output=True, text=True, timeout=200, check=False)
-        self.assertEqual(done.returncode, status, done.stdout + done.stderr)
+class FieldTest(ProgramTest):
+    def run_program(self, *words, **options):
+        done = modebank(*words, cwd=self.folder, **options)
         return done.stdout + done.stderr
 
     def write(self, name, header="", **columns):
@@ -166,4 +147,4 @@ class Slurm(Configured):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    main()

@@ -3,25 +3,13 @@
 Every log moves by v(k+1) = 0.9 v(k) + 0.1 u(k), so a pair of numbers shows whether rows, names and times are right.
 """
 import json
-import os
-import pathlib
 import re
-import shutil
 import sqlite3
 import struct
 import subprocess
 import sys
-import tempfile
-import unittest
 
-try:
-    import h5py
-    import numpy as np
-except ImportError as missing:
-    if os.environ.get("CI") == "true":
-        raise
-    print(f"SKIPPED: Python has no module {missing.name} (Debian: python3-h5py, python3-numpy)")
-    sys.exit(77)
+from program import ProgramTest, h5py, main, modebank, np
 
 HEAD, TIMES = "time,speed,throttle", ["%.2f" % (0.05 * k) for k in range(400)]
 
@@ -49,16 +37,9 @@ def joint_state(ns, names, velocities):
     return data + bytes((4 - len(data)) % 8) + struct.pack(f"<{len(velocities)}d", *velocities) + struct.pack("<I", 0)
 
 
-class Fields(unittest.TestCase):
-    def setUp(self):
-        self.folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-fields-"))
-        self.addCleanup(shutil.rmtree, self.folder)
-
+class Fields(ProgramTest):
     def modebank(self, *words, status=0):
-        done = subprocess.run([os.environ["MODEBANK_PROGRAM"], *words], cwd=self.folder, capture_output=True, text=True,
-                              timeout=200, check=False)
-        self.assertEqual(done.returncode != 0, status != 0, done.stdout + done.stderr)
-        return done
+        return modebank(*words, status=status, cwd=self.folder)
 
     def write(self, name, *lines):
         (self.folder / name).write_text("\n".join([*lines, ""]))
@@ -91,9 +72,9 @@ class Fields(unittest.TestCase):
         self.assertGreaterEqual(sum(lengths), fewest)
         return keys, doubts, table
 
-    def refused(self, file, module, *names):
+    def refused(self, file, module, *names, status=1):
         """That a refusal names these objects, and that its lines of Python run, if the module is there."""
-        message = self.modebank("init", file, "-o", "log.ini", "--yes", status=1).stderr
+        message = self.modebank("init", file, "-o", "log.ini", "--yes", status=status).stderr
         for name in names:
             self.assertIn(name, message)
         if subprocess.run([sys.executable, "-c", f"import {module}"], capture_output=True, check=False).returncode != 0:
@@ -201,7 +182,7 @@ class Fields(unittest.TestCase):
                                              ("data_2", [0.05 * np.arange(400), v, -u], 0, "<f8")):
                 file.write(struct.pack("<5i", kind, *np.shape(values), 0, len(name) + 1) + name.encode() + b"\0" +
                            np.array(values, form).tobytes(order="F"))
-        self.refused("log.mat", "scipy.io", "Modelica")
+        self.refused("log.mat", "scipy.io", "Modelica", status=2)
         self.expect("log.mat.csv", 0.05, 370, "speed", "u")
 
     def test_joints_are_found_by_name(self):
@@ -225,4 +206,4 @@ class Fields(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    main()
