@@ -14,7 +14,6 @@ import argparse
 import collections
 import concurrent.futures
 import csv
-import math
 import os
 import pathlib
 import sys

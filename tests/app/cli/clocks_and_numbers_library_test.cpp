@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <functional>
-#include <sstream>
 
 #include "filter/step/equations/bounds.hpp"
 #include "ident/data/streams.hpp"

@@ -2,7 +2,6 @@
 
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
-#include <filesystem>
 #include <random>
 #include <sstream>
 

@@ -1,6 +1,5 @@
 #include "app/report/page/study_page.hpp"
 
-#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <functional>
 #include <stdexcept>
 #include <vector>
 

@@ -1,6 +1,5 @@
 #include "tests/io/archive/archive_compare.hpp"
 
-#include <cmath>
 #include <cstring>
 #include <tuple>
 

@@ -1,6 +1,5 @@
 // Archives that another program changed and gave a valid hash. Every reader refuses wrong shapes and positions.
 // Verification finds wrong values.
-#include <cmath>
 #include <limits>
 
 #include "io/archive/bank/load_bank.hpp"

@@ -1,4 +1,3 @@
-#include <cmath>
 
 #include "tests/io/import/import_fixture.hpp"
 

@@ -1,7 +1,6 @@
 // Times from typical loggers: units by name, size and spacing; calendars and clocks; one format for all files.
 #include <fmt/format.h>
 
-#include <cmath>
 #include <functional>
 
 #include "io/table/stamp_pattern.hpp"
