@@ -10,33 +10,15 @@
 #include "app/cli/json_number.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/result.hpp"
-#include "app/config/configuration_output.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/printable.hpp"
-#include "io/files/replace_file.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
-
-void require_usage(const CommandLine& line) {
-  if (line.apply && line.output.empty())
-    throw ConfigurationError("--apply needs a file to write: modebank check CONFIG --apply -o FILE");
-  if (!line.apply && !line.output.empty())
-    throw ConfigurationError("-o works with --apply only: modebank check CONFIG --apply -o FILE");
-  if (line.apply && line.findings)
-    throw ConfigurationError("--findings tries no settings, so --apply has none to write; leave one of them out");
-}
-
-void check_target(const CommandLine& line, const Config& config) {
-  if (!line.apply) return;
-  std::vector<std::filesystem::path> sources{line.files.front()};
-  for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
-  check_configuration_output("-o", line.output, sources, line.force);
-}
 
 class ScoringLog : public Listener {
  public:
@@ -73,7 +55,7 @@ nlohmann::json structure_json(const FoundStructure& found) {
 }
 
 /// Prints findings at once, and each suggestion as soon as it is scored.
-Suggestions tell(const CommandLine& line, const Config& config, const DataCheck& check, nlohmann::json& page) {
+void tell(const CommandLine& line, const Config& config, const DataCheck& check, nlohmann::json& page) {
   const std::vector<std::string> findings = findings_of(check, config);
   print_text(line, check_text(check, findings));
   const bool usable = check.unusable.empty(), scored = usable && !line.findings;
@@ -90,32 +72,20 @@ Suggestions tell(const CommandLine& line, const Config& config, const DataCheck&
     page["structure"] = found ? structure_json(*found) : nlohmann::json(nullptr);
     page["suggestions"] = scored ? suggestions_json(suggestions, config) : nlohmann::json(nullptr);
   }
-  if (usable) return suggestions;
+  if (usable) return;
   print_json(line, page, 1);
   throw DataError("unusable as configured: " + unusable_text(check));
-}
-
-void apply(const CommandLine& line, const Config& config, const Suggestions& suggestions, nlohmann::json& page) {
-  replace_file(final_target(line.output),
-               {applied_text(suggestions, config, line.files.front(), line.overrides, line.output)});
-  print_text(line, fmt::format("{}: {}\n", line.output,
-                               suggestions.any() ? "the configuration with the suggested settings"
-                                                 : "the configuration unchanged, because nothing is suggested"));
-  page["written"] = {line.output};
 }
 
 }  // namespace
 
 int run_check(const CommandLine& line) {
-  require_usage(line);
   const Config config = load_valid_config(line.files.front(), line.overrides);
-  check_target(line, config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const ProgressMeter meter(!line.quiet);
   const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});
   nlohmann::json page;
-  const Suggestions suggestions = tell(line, config, check, page);
-  if (line.apply) apply(line, config, suggestions, page);
+  tell(line, config, check, page);
   print_json(line, page);
   return 0;
 }

@@ -71,7 +71,6 @@ class Mistakes(ProgramTest):
                                ("init log.csv --yes --force -o", ("log.csv", "a.h5")),
                                ("init log.csv --yes -o", ("test.ini",)),
                                ("export a.h5 --force --to json -o", ("a.h5", "log.csv")),
-                               ("check test.ini --apply --force -o", ("test.ini", "run_00.csv")),
                                ("run test.ini --force --archive.output", ("test.ini", "run_01.csv", "log.csv"))):
             for output in outputs:
                 with self.subTest(words=words, output=output):

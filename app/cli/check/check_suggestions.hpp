@@ -1,6 +1,5 @@
 #pragma once
 
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
@@ -22,10 +21,5 @@ std::string gain_reason(const Suggestions& suggestions, const Trial& trial);
 /// Text on the suggestions with their gains, and on the trials that gained nothing.
 std::string suggestions_text(const Suggestions& suggestions, const Config& config);
 nlohmann::json suggestions_json(const Suggestions& suggestions, const Config& config);
-
-/// Content of the file `output`: the configuration file with the keys of the command line and the suggestions. Throws
-/// ConfigurationError for a path that a configuration cannot contain.
-std::string applied_text(const Suggestions& suggestions, const Config& config, const std::filesystem::path& file,
-                         const KeyValues& overrides, const std::filesystem::path& output);
 
 }  // namespace modebank::app

@@ -208,12 +208,6 @@ TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
       const ProgramResult result = modebank(words);
       EXPECT_EQ(result.status, 0) << words.front() << " " << words.back() << result.err;
     }
-  const std::vector<std::string> apply{"check", config(), "--apply", "-o", file("new.ini").string()};
-  EXPECT_EQ(modebank(apply).status, 0);
-  EXPECT_THAT(modebank(apply).err, HasSubstr("exists: name another file (-o FILE), or overwrite it with --force"));
-  std::vector<std::string> forced = apply;
-  forced.emplace_back("--force");
-  EXPECT_EQ(modebank(forced).status, 0);
 }
 
 TEST_F(Robustness, P8AStudysTableIsNoArchive) {

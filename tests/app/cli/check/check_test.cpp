@@ -20,7 +20,7 @@ TEST_F(Check, PrintsAPageAndTheSameNumbersAsJson) {
   for (const char* part :
        {"data check: 2 runs", "channel", "findings", "suggested, by parts of 1 training run left out"})
     EXPECT_THAT(page.out, HasSubstr(part));
-  const json check = check_json(config(), {"--data.root", file(".").string()});
+  const json check = check_json(config(), {"--findings", "--data.root", file(".").string()});
   EXPECT_TRUE(check.at("usable").get<bool>());
   const json& run = run_of(check, "00");
   EXPECT_EQ(run.at("inputs_sampling").at("samples"), 80);
@@ -72,7 +72,7 @@ TEST_F(Check, ABinaryInputIsNoLimiter) {
     write(run, text);
   }
   write("test.ini", "[data]\ninputs = run_*.csv\nstate = wz\ninput = u\n[window]\nlength = 10\n");
-  const json check = check_json(config(), {"--data.root", file(".").string()});
+  const json check = check_json(config(), {"--findings", "--data.root", file(".").string()});
   std::vector<std::string> of_input;
   for (const json& finding : check.at("findings"))
     if (const auto line = finding.get<std::string>(); line.starts_with("u ")) of_input.push_back(line);
@@ -103,7 +103,7 @@ TEST_F(Check, RestIsNoCoarseMeasurement) {
   write("test.ini",
         "[data]\ninputs = run_*.csv\nstate = wz\ninput = u\n[window]\nlength = 10\n[mixture]\ncomponents = 1..2\n"
         "restarts = 2\n[bank]\nrefine = none\n");
-  const json check = check_json(config(), {"--data.root", file(".").string()});
+  const json check = check_json(config(), {"--findings", "--data.root", file(".").string()});
   EXPECT_EQ(check.at("findings").dump().find("wz repeats"), std::string::npos);
   const ProgramResult result = run();
   ASSERT_EQ(result.status, 0) << result.err;

@@ -1,7 +1,6 @@
-// Suggestions of `modebank check`. They are scored on training runs left out, and --apply writes them.
+// Suggestions of `modebank check`. They are scored on training runs left out.
 #include <array>
 #include <deque>
-#include <fstream>
 #include <random>
 #include <sstream>
 
@@ -48,11 +47,6 @@ class Suggest : public Check {
           "= 1\n"
           "[bank]\ntheta = mean\nnoise = fixed\nprocess_variance = 1e-4\nmeasurement_variance = 0.05\n" +
               more);
-  }
-  static std::string content(const std::filesystem::path& path) {
-    std::ostringstream text;
-    text << std::ifstream(path).rdbuf();
-    return text.str();
   }
 };
 
@@ -109,58 +103,6 @@ TEST_F(Suggest, TheSameForAnyNumberOfThreads) {
   write_runs(0.05);
   write_config("[window]\nloss = trivial\n");
   EXPECT_EQ(check_json(config(), {"--job.threads", "1"}), check_json(config(), {"--job.threads", "4"}));
-}
-
-TEST_F(Suggest, AppliedFileIsTheFileWithTheKeys) {
-  write_runs(0.05);
-  write_config("[window]\nloss = trivial  # mine\n");
-  std::filesystem::create_directory(file("elsewhere"));
-  const std::string applied = file("elsewhere/applied.ini").string();
-  const ProgramResult result = modebank({"check", config(), "--apply", "-o", applied, "--window.step", "2"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const std::string text = content(applied);
-  for (const char* part : {"# the robot's\n", "right  # wheels\n", "# was: loss = trivial  # mine\n", "nats per sample",
-                           "\nloss = tukey\n", "\nstep = 2\n"})
-    EXPECT_THAT(text, HasSubstr(part));
-  ASSERT_EQ(modebank({"run", applied, "--archive.output", archive()}).status, 0) << "data are found from there";
-  const std::string other = file("other.h5").string();
-  const json keys = check_json(config(), {"--window.step", "2"}).at("suggestions").at("suggested");
-  std::vector<std::string> same{"run", config(), "--archive.output", other, "--window.step", "2"};
-  for (const auto& [key, value] : keys.items()) same.insert(same.end(), {"--" + key, value.get<std::string>()});
-  ASSERT_EQ(modebank(same).status, 0);
-  const auto scores = [&](const std::string& of) { return modebank({"show", of, "evaluation/summary", "--json"}).out; };
-  EXPECT_EQ(scores(archive()), scores(other));
-}
-
-TEST_F(Suggest, AppliedFileIsTheSameWhereNothingGains) {
-  write_config("[window]\nloss = trivial\n");
-  const ProgramResult result = modebank({"check", config(), "--apply", "-o", file("applied.ini").string()});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_EQ(content(file("applied.ini")), content(config()));
-  EXPECT_THAT(result.out, HasSubstr("the configuration unchanged, because nothing is suggested"));
-}
-
-TEST_F(Suggest, UsageErrorsWriteNothing) {
-  write_config("");
-  const auto refusal = [&](std::vector<std::string> options) {
-    options.insert(options.begin(), {"check", config()});
-    const ProgramResult result = modebank(options);
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(result.out, "");
-    return result.err;
-  };
-  const std::string before = content(config());
-  EXPECT_THAT(refusal({"--apply"}), HasSubstr("--apply needs a file to write"));
-  EXPECT_THAT(refusal({"-o", file("x.ini").string()}), HasSubstr("with --apply only"));
-  EXPECT_THAT(refusal({"--apply", "-o", config()}), HasSubstr("is read by this command"));
-  EXPECT_THAT(refusal({"--apply", "-o", file("run_00.csv").string()}), HasSubstr("is read by this command"));
-  EXPECT_THAT(refusal({"--apply", "-o", file("nowhere/x.ini").string()}), HasSubstr("-o: "));
-  EXPECT_EQ(content(config()), before);
-  EXPECT_FALSE(std::filesystem::exists(file("x.ini")));
-  const ProgramResult unusable =
-      modebank({"check", config(), "--apply", "-o", file("x.ini").string(), "--window.length", "900"});
-  EXPECT_EQ(unusable.status, 1);
-  EXPECT_FALSE(std::filesystem::exists(file("x.ini")));
 }
 
 }  // namespace
