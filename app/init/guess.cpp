@@ -199,20 +199,16 @@ void guess_inputs(const std::vector<SurveyedFile>& files, const std::vector<Cand
     guess_inputs_by_place(all, by_place, guess);
 }
 
-/// An axis of a rate or acceleration that hardly moves is no state: the axis beside it that moves most is.
-void leave_resting_axis(const std::vector<SurveyedFile>& files, Guess& guess) {
+/// An axis of a rate or acceleration that hardly moves is no state: a sister that moves takes its place.
+void leave_resting_axis(const std::vector<SurveyedFile>& files, ChannelPlace& state) {
   constexpr double hardly = 0.02;
-  for (ChannelPlace& state : guess.states) {
-    const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
-    const SurveyedChannel& rests = channels[state.channel];
-    for (std::size_t c = 0; c < channels.size() && is_motion_of_axes(rests.name); ++c)
-      if (is_motion_of_axes(channels[c].name) && channels[c].name.size() == rests.name.size() &&
-          channels[c].name.starts_with(rests.name.substr(0, rests.name.size() - 1)) &&
-          rests.check.sd < hardly * channels[c].check.sd && channels[state.channel].check.sd < channels[c].check.sd)
-        state.channel = c;
-    if (const std::string& moves = channels[state.channel].name; moves != rests.name)
-      guess.reasons.push_back({fmt::format("{} hardly moves beside {}, which is taken", rests.name, moves), "state"});
-  }
+  const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
+  const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
+  for (std::size_t c = 0; c < channels.size(); ++c)
+    if (const SurveyedChannel& rests = channels[state.channel];
+        is_motion_of_axes(rests.name) && is_motion_of_axes(channels[c].name) &&
+        stem(channels[c].name) == stem(rests.name) && rests.check.sd < hardly * channels[c].check.sd)
+      state.channel = c;
 }
 
 /// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up.
@@ -289,7 +285,8 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
          "input"});
   replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
-  if (!guess.mounting) leave_resting_axis(files, guess);
+  if (!guess.mounting)
+    for (ChannelPlace& state : guess.states) leave_resting_axis(files, state);
   return guess;
 }
 

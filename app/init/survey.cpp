@@ -109,9 +109,8 @@ class TableSurvey {
       const SurveyedChannel& channel = table.channels[i];
       if (channel.type == "time" && !channel.name.ends_with("receive_time")) typed.push_back({channel.name});
       const SurveyedChannel* const next = i + 1 < table.channels.size() ? &table.channels[i + 1] : nullptr;
-      const bool named_time = names_time(channel.name);
-      const bool pair = !named_time && next != nullptr && is_since_1970(channel.values) && is_below_a_second(*next);
-      if (!named_time && !pair) continue;
+      const bool pair = next != nullptr && is_since_1970(channel.values) && is_below_a_second(*next);
+      if (!names_time(channel.name) && !pair) continue;
       if (pair || (next != nullptr && names_nanoseconds(next->name)))
         named.insert(named.begin(), {channel.name, next->name});
       else if (const std::string date = date_beside(table, i); !date.empty())
@@ -187,14 +186,13 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// Two functions: whole seconds since 1970 that never fall, and whole nanoseconds below a second.
+  /// Whole seconds since 1970 that never fall, and nanoseconds below a second.
   static bool is_since_1970(const Eigen::VectorXd& v) {
     return v.size() > 1 && v.minCoeff() > 9e8 && v.maxCoeff() < 4.3e9 && v == v.array().round().matrix() &&
            (v.tail(v.size() - 1).array() >= v.head(v.size() - 1).array()).all();
   }
   static bool is_below_a_second(const SurveyedChannel& c) {
-    return c.is_number() && c.check.least >= 0.0 && c.check.largest > 5e8 && c.check.largest < 1e9 &&
-           c.values == c.values.array().round().matrix();
+    return c.is_number() && c.check.least >= 0.0 && c.check.largest > 5e8 && c.check.largest < 1e9;
   }
 
   /// Whether values are a clock or a counter: they increase evenly, also where some are missing or whole numbers are
@@ -217,10 +215,9 @@ class TableSurvey {
   /// Whether the value changes only where the column that separates runs changes.
   static bool rests_in_runs(const Eigen::VectorXd& values, const SurveyedTable& table) {
     const SurveyedChannel* const run = table.run.empty() ? nullptr : table.find(table.run);
-    const bool numbered = run != nullptr && run->values.size() == values.size();
-    for (Eigen::Index k = 1, last = 0; k < values.size(); ++k) {
+    for (Eigen::Index k = 0, last = 0; k < values.size(); ++k) {
       if (!std::isfinite(values(k))) continue;
-      const bool same_run = !numbered || run->values(k) == run->values(last);
+      const bool same_run = run == nullptr || !run->is_number() || run->values(k) == run->values(last);
       if (same_run && std::isfinite(values(last)) && values(k) != values(last)) return false;
       last = k;
     }
@@ -356,11 +353,7 @@ class TableSurvey {
   }
 };
 
-FormatOptions surveyed_format() {
-  FormatOptions format;
-  format.skip_automatic = true;
-  return format;
-}
+FormatOptions surveyed_format() { return {.skip_automatic = true}; }
 
 }  // namespace
 
@@ -382,11 +375,13 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   });
   file.notes = std::move(columns.notes);
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));
-  for (const TableInfo& table : tables) file.skipped = static_cast<std::size_t>(table.skipped);
-  const auto longest = std::max_element(tables.begin(), tables.end(),
-                                        [](const TableInfo& a, const TableInfo& b) { return a.rows < b.rows; });
+  std::uint64_t longest = 0;
+  for (const TableInfo& table : tables) {
+    file.skipped = static_cast<std::size_t>(table.skipped);
+    longest = std::max<std::uint64_t>(longest, table.rows);
+  }
   for (std::size_t i = 0; i < tables.size(); ++i)
-    if (tables[i].type.empty() && 100 * tables[i].rows < longest->rows)
+    if (tables[i].type.empty() && 100 * tables[i].rows < longest)
       continue;  // such as the sizes of the arrays beside them
     else if (columns.alternation[i].empty())
       file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());

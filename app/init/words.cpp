@@ -38,8 +38,8 @@ constexpr std::array state_words{
     Word{" state ", 3},       Word{" angle ", 2},    Word{" position ", 1},
     Word{" pressure ", 4},    Word{" flow ", 3},     Word{" gz ", 5},
     Word{" heading ", 3},     Word{" yaw ", 2},      Word{" roll rate ", 5},
-    Word{" pitch rate ", 5},  Word{" altitude ", 1}, Word{" alt ", 1},
-    Word{" ewe ", 5},
+    Word{" pitch rate ", 5},  Word{" altitude ", 1}, Word{" velocities ", 3},
+    Word{" alt ", 1},         Word{" ewe ", 5},
 };
 
 constexpr std::array input_words{

@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
+#include "app/text/duration_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
@@ -116,7 +117,7 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   const FirstScreen screen = make_first_screen(archive, settings);
   const int columns = width > 0 ? std::clamp(width, least_columns, screen_columns) : screen_columns;
   const auto part = [&](const char* label, const std::string& text, int most) {
-    return section(label, as_typed(text, archive, program, file), most, columns);
+    return section(label, in_samples(archive.config, as_typed(text, archive, program, file)), most, columns);
   };
   const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
                              part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);

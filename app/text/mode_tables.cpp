@@ -6,6 +6,7 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 
+#include "app/text/duration_text.hpp"
 #include "app/text/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/robot_numbers.hpp"
@@ -176,6 +177,8 @@ ModeTable mode_table(const Archive& archive, Index rows) {
   for (Index i = shown; i < all; ++i) table.others_use += use[static_cast<std::size_t>(i)];
   families.resize(static_cast<std::size_t>(shown));
   table.rows = family_rows(archive, families, several, tracks);
+  for (ModeTable::Row& row : table.rows)
+    for (std::string& cell : row.cells) cell = in_samples(archive.config, cell);
   return table;
 }
 

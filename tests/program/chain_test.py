@@ -77,6 +77,25 @@ class Chain(ProgramTest):
         self.assertEqual(table["selected"].tolist(), (bic == bic.min()).astype(int).tolist())
         self.close(table["log_likelihood"][bic.argmin()], density.sum(), 1e-8)
 
+    def test_the_bank_is_regressions_weighted_by_memberships(self):
+        """The membership of a transition is the mean responsibility of the windows that cover it."""
+        found = arrays(learn(self.folder, "--mixture.components=2", "--mixture.noise_component=false",
+                             "--bank.refine=none", "--window.intercept=false", "--window.step=1",
+                             "--window.prior=none", samples=300))
+        x, u, gamma = (found[name] for name in ("data/state", "data/input", "mixture/responsibilities"))
+        X, d, weights = np.c_[x, u][:299], np.diff(x[:300, 0]), np.zeros((299, 3))
+        length = 299 - found["windows/start"].max()
+        for i in np.flatnonzero(np.isfinite(gamma[:, 0])):
+            weights[found["windows/start"][i] + np.arange(length)] += [*gamma[i], 1]
+        for k, w in enumerate((weights[:, :2] / weights[:, 2:]).T):
+            inverse = np.linalg.inv(X.T * w @ X)
+            theta = inverse @ (X.T * w) @ d
+            scatter = w @ (d - X @ theta)**2
+            self.close(found["bank/parameters"][k], theta, 1e-8)
+            self.close(found["bank/Q"][k].ravel(), scatter / w.sum(), 1e-8)
+            self.close(found["bank/parameter_standard_error"][k],
+                       np.sqrt(scatter / (w.sum() - 3) * inverse.diagonal()), 1e-8)
+
     def test_the_evaluation_is_a_textbook_imm_filters(self):
         said, names = self.of("evaluation/bank"), ("prediction", "innovation_covariance", "log_density", "pit", "state")
         for run in self.runs.values():

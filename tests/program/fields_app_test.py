@@ -85,6 +85,14 @@ class Columns(FieldTest):
         told = self.run_program(*words, "--data.rate_hz", 20, "--data.state", "aa", "--data.input", "bb")
         self.assertNotIn("doubt", told)
 
+    def test_without_times_the_screen_counts_samples(self):
+        t, u, x = plant()
+        self.write("log.csv", speed=x, throttle=u)
+        screen = self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine",
+                                  "none", "--mixture.components", 1).split("\nread ")[1]
+        self.assertRegex(screen, r"steps of 1 samples[^$]*\d samples +\d")
+        self.assertNotRegex(screen.split("files")[0], r"\d s\b")
+
 
 class Configured(FieldTest):
     def setUp(self):

@@ -185,11 +185,48 @@ class Fields(ProgramTest):
         self.refused("log.mat", "scipy.io", "Modelica", status=2)
         self.expect("log.mat.csv", 0.05, 370, "speed", "u")
 
-    def test_joints_are_found_by_name(self):
+    def test_structs_and_cells_of_matlab_are_refused(self):
+        try:
+            import scipy.io
+        except ImportError:
+            self.skipTest("Python has no module scipy")
+        runs = np.empty(3, [("speed", object), ("throttle", object)])
+        runs[:] = [drive(40 + i) for i in range(3)]
+        scipy.io.savemat(self.folder / "structs.mat", {"log": runs})
+        self.refused("structs.mat", "pandas", "log[0]")
+        self.assertEqual(len(list(self.folder.glob("run_*.csv"))), 3)
+        cells = np.empty(3, object)
+        cells[:] = [np.c_[run["speed"], run["throttle"]] for run in runs]
+        scipy.io.savemat(self.folder / "cells.mat", {"trials": cells})
+        self.refused("cells.mat", "scipy", "trials", status=2)
+
+    def test_a_unit_that_contradicts_the_name_is_said(self):
+        self.write("log.csv", "time_ms,speed,throttle", "s,m/s,-", *rows(TIMES, 15))
+        doubts = self.expect("log.csv", 0.05, 370)[1]
+        self.assertRegex(doubts, "time_ms.*milliseconds.*seconds")
+
+    def bag(self, *topics):
+        """A bag of ROS 2 with topics of the type JointState."""
         base = sqlite3.connect(self.folder / "log.db3")
         base.executescript("CREATE TABLE topics(id, name, type, serialization_format);"
-                           "CREATE TABLE messages(topic_id, timestamp, data);"
-                           "INSERT INTO topics VALUES(1, '/joint_states', 'sensor_msgs/msg/JointState', 'cdr')")
+                           "CREATE TABLE messages(topic_id, timestamp, data);")
+        for number, topic in enumerate(topics, 1):
+            base.execute("INSERT INTO topics VALUES(?, ?, 'sensor_msgs/msg/JointState', 'cdr')", (number, topic))
+        return base
+
+    def test_topics_of_two_robots_are_not_joined(self):
+        base = self.bag("/a/joint_states", "/a/command", "/b/joint_states", "/b/command")
+        for k, (v, u) in enumerate(zip(*drive(31))):
+            ns = 1_700_000_000 * 10**9 + 50_000_000 * k
+            for number, value in enumerate((v, 1.0, 0.5, u), 1):
+                base.execute("INSERT INTO messages VALUES(?, ?, ?)", (number, ns, joint_state(ns, ["arm"], [value])))
+        base.commit()
+        base.close()
+        message = self.modebank("init", "log.db3", "-o", "log.ini", "--yes", status=1).stderr
+        self.assertRegex(message, "/a/joint_states.*/b/command.*data.input")
+
+    def test_joints_are_found_by_name(self):
+        base = self.bag("/joint_states")
         for k, (v, u) in enumerate(zip(*drive(30))):
             ns = 1_700_000_000 * 10**9 + 50_000_000 * k
             order = [("left", v), ("right", u)][::1 if k < 200 else -1]  # the controller restarts

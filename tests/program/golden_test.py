@@ -31,6 +31,21 @@ def ljung_box_p(z):
     return chi_square_tail(len(z) * (len(z) + 2) * sum(r**2 / (len(z) - k) for k, r in enumerate(rho, 1)), lags)
 
 
+def student_score(errors):
+    """Mean log density of Student's t with the likeliest scale, by golden sections, and of five degrees of freedom."""
+    best, step = -math.inf, (math.sqrt(5) - 1) / 2
+    for nu in (2, 4, 8, 30, 1000):
+        def density(log_scale, nu=nu):
+            constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - math.log(nu * math.pi) / 2
+            return constant - log_scale - (nu + 1) / 2 * np.log1p((errors / math.exp(log_scale))**2 / nu).mean()
+        low, high = math.log(errors.std()) - 6, math.log(errors.std()) + 2
+        for _ in range(100):
+            left, right = high - step * (high - low), low + step * (high - low)
+            low, high = (left, high) if density(left) < density(right) else (low, right)
+        best = max(best, density(low))
+    return best
+
+
 def fisher_p(p_values):
     return chi_square_tail(-2 * np.log(p_values).sum(), 2 * len(p_values))
 
@@ -84,6 +99,31 @@ class Windows(Golden):
         self.close(found["windows/r_squared"], case["r_squared"], 1e-11)
         self.close(found["windows/aic"], case["aic"], 1e-9)
 
+
+    def test_structures_are_scored_as_numpy_scores_them(self):
+        """Least squares on the rows that the most lags leave (12 of each, delays to 12), run r in fold r mod 5."""
+        draw, runs = np.random.default_rng(3), []
+        for r in range(8):
+            n = 150 + 7 * r
+            y, u = np.zeros((n, 2)), np.repeat(draw.normal(size=(n // 3 + 1, 1)), 3, 0)[:n]
+            for k in range(1, n - 1):
+                y[k + 1] = y[k] @ [[0.9, -0.2], [0.1, 0.7]] - 0.2 * y[k - 1] + u[k] * [0.3, -0.1] + 0.2
+                y[k + 1] += 0.05 * draw.standard_t(3, 2)
+            y[17, 1] = np.nan if r == 2 else y[17, 1]
+            names = self.write(f"run_{r}.csv", y, u)
+            runs.append((y, u))
+        said = self.archive("identify", "--window.loss=trivial", "--window.intercept=true", inputs="run_*.csv", test=7,
+                            state=names["x"], input=names["u"], missing="predict")["structure/scores"]
+        rows = [(y, u, k, r % 5) for r, (y, u) in enumerate(runs[:7]) for k in range(22, len(y) - 1)
+                if not np.isnan(y[k - 11:k + 2]).any()]
+        folds, Y = np.array([fold for *_, fold in rows]), np.array([y[k + 1] - y[k] for y, u, k, _ in rows])
+        for of in said[np.isfinite(said["log_score"])]:
+            at = of["input_delay"] - 1 + np.arange(of["input_lags"])
+            X = np.array([np.r_[y[k - np.arange(of["state_lags"])].ravel(), u[k - at].ravel(), 1] for y, u, k, _ in rows])
+            e = np.concatenate([Y[folds == f] - X[folds == f] @ np.linalg.lstsq(X[folds != f], Y[folds != f], None)[0]
+                                for f in range(5)])
+            self.close(of["rmse"], np.sqrt((e**2).mean(axis=0)), 1e-12)
+            self.close(of["log_score"], sum(map(student_score, e.T)), 1e-9)
 
     def test_condition_and_information(self):
         case, other = golden("ident_fits")["unexcited"], golden("ident_fits")["two_states"]

@@ -1,5 +1,6 @@
 """The live filter says of each sample what `evaluate` said: of lines and files, in Python, late and missing."""
 import csv
+import re
 
 from program import ProgramTest, arrays, attributes, demo, learn, main, modebank, np, rows, slices
 
@@ -71,6 +72,13 @@ class Track(ProgramTest):
         for name, values in (("wz", [estimate.state[0] for estimate in said]),
                              ("p1", [estimate.mode_probability[1] for estimate in said])):
             np.testing.assert_allclose(values, evaluated(archive, "bank", "01")[name], 1e-12, 1e-12, err_msg=name)
+
+    def test_bare_nan_in_json(self):
+        archive, (header, *lines) = self.learn()
+        plain = ["{" + ", ".join(map('"{}": {}'.format, header.split(","), line.split(","))) + "}" for line in lines]
+        plain[5] = re.sub('"wz": [^,]*', '"wz": null', plain[5])
+        bare = [line.replace("{", '{"a": "x\\\\", ').replace("null", "NaN") for line in plain]
+        self.assertEqual(self.track(archive, bare).stdout, self.track(archive, plain).stdout)
 
     def test_bad_lines(self):
         """Each is skipped and told by its number. Without any sample the status is 1, with a wrong column 2."""

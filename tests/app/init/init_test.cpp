@@ -79,15 +79,6 @@ class Init : public ::testing::Test {
     validate(config);
     return text;
   }
-  std::vector<std::string> shared(const std::string& path, const std::string& ending = "") {
-    const std::filesystem::path at = test::shared_data_dir() / path;
-    std::vector<std::string> files;
-    if (!std::filesystem::is_directory(at)) return {at.string()};
-    for (const auto& entry : std::filesystem::directory_iterator(at))
-      if (entry.path().extension() == ending) files.push_back(entry.path().string());
-    std::sort(files.begin(), files.end());
-    return files;
-  }
   std::string path(const std::string& name) const { return (folder.path() / name).string(); }
 
   TemporaryFolder folder;
@@ -263,54 +254,6 @@ TEST_F(Init, SaysWhatKeepsAColumnFromBeingNumbers) {
                 HasSubstr("column flow: \"2500,00\" is not a number: other numbers have a decimal point"));
   }
   EXPECT_THAT(listing, HasSubstr("text: \"2500,00\" is not a number"));
-}
-
-TEST_F(Init, KnowsHuskysBag) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  const std::string text = write(shared("bags/husky_outdoor_test1.bag"));
-  EXPECT_THAT(text, HasSubstr("gravity acts along +y of this instrument (9.79 m/s^2)"));
-  EXPECT_THAT(text, HasSubstr("split = blocks 10"));
-  EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
-  EXPECT_THAT(config.data.input, ElementsAre("linear_x", "angular_z"));
-  EXPECT_THAT(text, HasSubstr("derive = yaw_rate [rad/s] = '/imu/data.angular_velocity.y'"));
-  EXPECT_THAT(text, HasSubstr("derive = angular_z [rad/s] = '/husky_velocity_controller/odom.twist.twist.angular.z'"));
-  EXPECT_TRUE(config.data.lag_auto);
-  EXPECT_THAT(listing, HasSubstr("/imu/data (sensor_msgs/Imu): 11865 rows, 30.01 Hz"));
-  EXPECT_EQ(import_data(config.data).recording.runs.size(), 10U);
-}
-
-TEST_F(Init, KnowsTheBagsExtracts) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  std::vector<std::string> files = shared("bags/husky_outdoor_test1_odom.csv");
-  files.push_back(shared("bags/husky_outdoor_test1_imu.csv").front());
-  write(files);
-  EXPECT_THAT(config.data.state, ElementsAre("wy"));
-  EXPECT_THAT(config.data.input, ElementsAre("vx", "wz"));
-  EXPECT_THAT(config.data.time, ElementsAre("t"));
-  EXPECT_NO_THROW(import_data(config.data));
-}
-
-TEST_F(Init, KnowsIceDriveDartAndTanks) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  write(shared("borealtc/ICE", ".csv"));
-  EXPECT_EQ(config.data.inputs, "pro_*.csv");
-  EXPECT_EQ(config.data.states, "imu_*.csv");
-  EXPECT_THAT(config.data.state, ElementsAre("wz"));
-  EXPECT_THAT(config.data.input, ElementsAre("velL", "velR"));
-  write(shared("drive_husky/husky_samples.csv"));
-  EXPECT_THAT(config.data.state, ElementsAre("gyro_z"));
-  EXPECT_THAT(config.data.input, ElementsAre("wheel_left", "wheel_right"));
-  EXPECT_THAT(config.data.time, ElementsAre("t_block"));
-  EXPECT_EQ(config.data.run, "block");
-  EXPECT_EQ(import_data(config.data).recording.runs.size(), 201U);
-  write(shared("dart", ".csv"));
-  EXPECT_EQ(config.data.inputs, "*.csv");
-  EXPECT_THAT(config.data.state, ElementsAre("yaw_rate"));
-  EXPECT_THAT(config.data.input, ElementsAre("steering", "throttle"));
-  EXPECT_EQ(config.data.rate_hz, 10.0);
-  write(shared("cascaded_tanks/est.csv"));
-  EXPECT_THAT(config.data.state, ElementsAre("level"));
-  EXPECT_THAT(config.data.input, ElementsAre("pump"));
 }
 
 TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {

@@ -3,10 +3,9 @@
 
     /usr/bin/python3 tests/golden/generate/learn_reference.py
 
-writes learn_weighted.json, learn_baseline.json and learn_noise_only.json into data/: weighted regressions by
-statsmodels and by a general-purpose minimiser of the penalised likelihood, Kalman filter likelihoods maximised by
-Nelder-Mead, and the noise-switching competitor by statsmodels' RLM, numpy quantiles and the textbook filter of
-imm_reference.py. Runs are lists of samples; x is (N, n), u is (N, m).
+writes learn_baseline.json and learn_noise_only.json into data/: Kalman filter likelihoods maximised by Nelder-Mead,
+and the noise-switching competitor by statsmodels' RLM, numpy quantiles and the textbook filter of imm_reference.py.
+Runs are lists of samples; x is (N, n), u is (N, m).
 """
 import numpy as np
 import statsmodels.api as sm
@@ -32,71 +31,6 @@ def stack(runs):
     """Regressors (N, n + m) and increments (N, n)."""
     return (np.concatenate([np.c_[r['x'][:-1], r['u'][:-1]] for r in runs]),
             np.concatenate([np.diff(r['x'], axis=0) for r in runs]))
-
-
-# ---- weighted regression -------------------------------------------------------------------------------------------
-
-
-def frequency_weighted(runs, g):
-    """theta, standard errors (degrees of freedom: sum of weights minus regressors) and Q, state by state."""
-    X, D = stack(runs)
-    fits = [sm.GLM(D[:, i], X, freq_weights=g).fit() for i in range(D.shape[1])]
-    theta = np.concatenate([f.params for f in fits])
-    r = D - X @ np.array([f.params for f in fits]).T
-    return dict(theta=theta, standard_error=np.concatenate([f.bse for f in fits]), Q=(g[:, None] * r).T @ r / g.sum())
-
-
-def penalised(runs, g, sd):
-    """Joint maximum over theta (n rows of q, row-major) and Q of the weighted Gaussian likelihood with a prior."""
-    X, D = stack(runs)
-    n, q = D.shape[1], X.shape[1]
-    mean = np.linalg.lstsq(X, D, rcond=None)[0].T.ravel()
-    rows, cols = np.tril_indices(n)
-
-    def unpack(z):
-        L = np.zeros((n, n))
-        L[rows, cols] = z[n * q:]
-        L[np.diag_indices(n)] = np.exp(np.diag(L))
-        return z[:n * q], L @ L.T
-
-    def cost(z):
-        theta, Q = unpack(z)
-        r = D - X @ theta.reshape(n, q).T
-        half = np.einsum('k,ki,ij,kj', g, r, np.linalg.inv(Q), r)
-        return 0.5 * (g.sum() * np.linalg.slogdet(Q)[1] + half + (((theta - mean) / sd) ** 2).sum())
-
-    r = D - X @ mean.reshape(n, q).T
-    start_L = np.linalg.cholesky((g[:, None] * r).T @ r / g.sum())
-    start_L[np.diag_indices(n)] = np.log(np.diag(start_L))
-    z = np.concatenate([mean, start_L[rows, cols]])
-    for _ in range(4):
-        z = minimize(cost, z, method='BFGS', options=dict(gtol=1e-9, maxiter=2000)).x
-    for _ in range(6):  # Newton with a differenced gradient: the last digits
-        z = newton_step(cost, z)
-    theta, Q = unpack(z)
-    return dict(sd=sd, theta=theta, Q=Q, cost=float(cost(z)))
-
-
-def newton_step(cost, z, h=1e-4):
-    d = len(z)
-    E = h * np.eye(d)
-    # fourth-order differences
-    g = np.array([(8 * (cost(z + e) - cost(z - e)) - (cost(z + 2 * e) - cost(z - 2 * e))) / (12 * h) for e in E])
-    H = np.array([[(cost(z + a + b) - cost(z + a - b) - cost(z - a + b) + cost(z - a - b)) / (4 * h * h) for b in E]
-                  for a in E])
-    return z - np.linalg.solve(H, g)
-
-
-def weighted():
-    rng = np.random.default_rng(11)
-    n, m = 2, 1
-    A = np.array([[-0.3, 0.1], [0.05, -0.5]])
-    B = np.array([[0.4], [-0.2]])
-    runs = [simulate(rng, A, B, np.full((N, n), 0.1), N) for N in (60, 45)]
-    g = np.concatenate([rng.beta(0.4, 0.4, size=len(r['x']) - 1) for r in runs])
-    sd = np.array([0.05, 0.1, 0.02, 0.1, 0.03, 0.2])
-    write('learn_weighted.json', dict(runs=runs, weights=g, plain=frequency_weighted(runs, g),
-                                      penalised=penalised(runs, g, sd)))
 
 
 # ---- baseline ------------------------------------------------------------------------------------------------------
@@ -194,6 +128,5 @@ def noise_only():
 
 
 if __name__ == '__main__':
-    weighted()
     baseline()
     noise_only()

@@ -274,24 +274,6 @@ TEST(LaggedRows, HaveTheirFullHistory) {
   EXPECT_TRUE(rows.X.allFinite());
 }
 
-TEST(StructureScorer, LeftOutErrorsAreThoseOfDirectLeastSquares) {
-  const nlohmann::json golden = read_golden("structure_search");
-  std::vector<Trajectory> runs;
-  for (const nlohmann::json& run : golden.at("runs"))
-    runs.push_back(make_run(golden_columns(run.at("state")), golden_columns(run.at("input"))));
-  const Recording recording = make_recording(std::move(runs));
-  const LaggedRows rows = make_lagged_rows(recording, {{1, 4}, {1, 3}, {0, 2}}, true);
-  const StructureScorer scorer(rows, {});
-  for (const nlohmann::json& of : golden.at("cases")) {
-    const nlohmann::json& lags = of.at("structure");
-    const LinearStructure structure{2, 1, true, lags.at(0), lags.at(1), lags.at(2)};
-    const Eigen::MatrixXd expected = golden_rows(of.at("errors")), errors = scorer.least_squares_errors(structure);
-    ASSERT_EQ(errors.rows(), expected.rows());
-    EXPECT_LT((errors - expected).cwiseAbs().maxCoeff(), 1e-9);
-    EXPECT_NEAR(scorer.least_squares(structure).log_score, of.at("log_score").get<double>(), 1e-7);
-  }
-}
-
 /// Inputs that react to the previous state, and inputs that do not.
 TEST(InputFeedback, IsSeenWhereInputsAnswer) {
   int false_alarms = 0;
