@@ -1,9 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-#include <optional>
-
 #include "app/chain/stages.hpp"
 #include "app/config/section.hpp"
 #include "ident/fit/fit_windows.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 
 #include "app/text/calibration_text.hpp"
 #include "app/text/judged_runs.hpp"

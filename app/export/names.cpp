@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <array>
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
 #include <set>

@@ -1,6 +1,5 @@
 #include "app/init/mounting.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 

@@ -1,5 +1,4 @@
 // Numbers of a robot, as means over the modes of a family.
-#include <cmath>
 
 #include "app/text/robot_numbers.hpp"
 #include "ident/base/not_a_number.hpp"

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <cmath>
 #include <cstdlib>
 #include <functional>
 

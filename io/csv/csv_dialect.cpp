@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <map>
 
 #include "io/csv/csv_number.hpp"
@@ -74,11 +73,12 @@ double score(const std::vector<Fields>& rows) {
   if (width < 2) return 0.0;
   const auto common = std::count_if(rows.begin(), rows.end(), [&](const Fields& row) { return row.size() == width; });
   std::size_t values = 0, fields = 0;
-  for (const Fields& row : rows)
-    for (const std::string& field : row) {
-      fields += &field == &row.back() && field.empty() ? 0 : 1;  // a missing last value says nothing
-      values += is_value(field) ? 1 : 0;
-    }
+  for (const Fields& row : rows) {
+    std::size_t filled = row.size();
+    while (filled > 0 && row[filled - 1].empty()) --filled;  // missing last values say nothing
+    fields += filled;
+    for (const std::string& field : row) values += is_value(field) ? 1 : 0;
+  }
   return static_cast<double>(common) / static_cast<double>(rows.size()) +
          static_cast<double>(values) / static_cast<double>(fields);
 }

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cstdint>
-#include <utility>
 
 #include "io/csv/csv_pass.hpp"
 #include "io/csv/csv_text.hpp"

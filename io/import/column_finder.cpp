@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <optional>
 
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"

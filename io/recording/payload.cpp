@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cstring>
 
 #include "ident/base/utf8.hpp"
 #include "io/recording/connections.hpp"

@@ -37,6 +37,7 @@ SETS = {"ice": "husky_ice.ini", "flooring": "flooring.ini", "drive": "drive_husk
         "tanks": "cascaded_tanks.ini", "arm": "robot_arm.ini", "buck": "buck_converter.ini", "hybrid": "hybrid.ini",
         "bag": "husky_outdoor.ini", "salvi": "salvi2025.ini"}
 SWAPPED, PLAIN = ("ice", "flooring", "drive", "dart", "bag"), ("ice", "flooring", "drive")
+SAME_ANYWHERE = {"OMP_NUM_THREADS": "1", "GLIBC_TUNABLES": "glibc.cpu.hwcaps=-AVX2,-FMA,-AVX2_Usable,-FMA_Usable"}
 PLACE, SCORES = ["set", "filter", "horizon", "output"], ["log_score", "rmse", "coverage_95"]
 COUNTS, FACTS = ["answer", "modes", "clusters", "lags"], ["lag_s", "R", "seconds"]
 COLUMNS = PLACE + SCORES + COUNTS + FACTS
@@ -49,7 +50,7 @@ def text(value):
 
 
 def call(*command, data=""):
-    environment = {**os.environ, "OMP_NUM_THREADS": "1"} | ({"MODEBANK_DATA": data} if data else {})
+    environment = {**os.environ, **SAME_ANYWHERE} | ({"MODEBANK_DATA": data} if data else {})
     done = subprocess.run([str(word) for word in command], env=environment, capture_output=True, text=True, check=False)
     return "" if done.returncode == 0 else f"FAILED, status {done.returncode}: {done.stderr.strip()[-200:]}"
 
@@ -236,9 +237,8 @@ def main():
     if given.command == "table":
         csv.writer(sys.stdout, lineterminator="\n").writerows([COLUMNS, *map(dict.values, read(*given.words).values())])
         return True
-    if given.command == "compare":
-        return compare(*given.words, given.reasons, given.only)
-    return quick(*given.words, given.reasons, given.parent_configs)
+    return (compare(*given.words, given.reasons, given.only) if given.command == "compare" else
+            quick(*given.words, given.reasons, given.parent_configs))
 
 
 if __name__ == "__main__":

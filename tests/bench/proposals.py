@@ -57,6 +57,7 @@ def cases(shared, work):
     for source in sorted((shared / "cases").iterdir()):
         folder = work / "cases" / source.name
         shutil.copytree(source, folder)
+        folder.chmod(0o700)  # the copy of a folder that nobody may write, too
         script = folder / "gen.py"
         needed = OTHER_MODULES.search(script.read_text(encoding="utf-8")) if script.exists() else None
         if needed:

@@ -1,6 +1,5 @@
 // Comparison with scikit-learn, R's mclust and an independent extreme deconvolution (fits), and with mpmath
 // (densities); tests/golden/generate/{mixture.py,mclust.R,extreme_deconvolution.py} generated the golden files.
-#include <algorithm>
 #include <numeric>
 
 #include "modebank/base/eigen.hpp"

@@ -126,9 +126,10 @@ class Fields(ProgramTest):
                            *[line.replace(",", mark) + end["rows"] for line in rows(TIMES, 7)])
                 with self.subTest(mark=mark, ends=ends):
                     self.expect("log.csv", 0.05, 370)
-        lines = [line.replace(",", "\t") + "\t" for line in rows(TIMES, 8)]
-        self.write("log.tsv", "time\tspeed\tthrottle\tnote", *lines)
-        self.expect("log.tsv", 0.05, 370)
+        for end in ("\t", "\t\t"):
+            lines = [line.replace(",", "\t") + end for line in rows(TIMES, 8)]
+            self.write("log.tsv", "time\tspeed\tthrottle\tnote", *lines)
+            self.expect("log.tsv", 0.05, 370)
 
     def test_arrays_are_unpacked_squeezed_and_turned(self):
         v, u = drive(9)
@@ -185,7 +186,7 @@ class Fields(ProgramTest):
         self.refused("log.mat", "scipy.io", "Modelica", status=2)
         self.expect("log.mat.csv", 0.05, 370, "speed", "u")
 
-    def test_structs_and_cells_of_matlab_are_refused(self):
+    def test_structs_cells_and_rows_of_matlab_are_refused(self):
         try:
             import scipy.io
         except ImportError:
@@ -199,6 +200,11 @@ class Fields(ProgramTest):
         cells[:] = [np.c_[run["speed"], run["throttle"]] for run in runs]
         scipy.io.savemat(self.folder / "cells.mat", {"trials": cells})
         self.refused("cells.mat", "scipy", "trials", status=2)
+        matrix = np.c_[0.05 * np.arange(400), np.transpose(drive(44))]
+        scipy.io.savemat(self.folder / "rows.mat", {"log": matrix.T})
+        self.refused("rows.mat", "scipy", "log", status=2)
+        scipy.io.savemat(self.folder / "resultID.mat", {"resultID": matrix[:, 1:]})
+        self.expect("resultID.mat", 1, 370, "resultID[0]", "resultID[1]")
 
     def test_a_unit_that_contradicts_the_name_is_said(self):
         self.write("log.csv", "time_ms,speed,throttle", "s,m/s,-", *rows(TIMES, 15))

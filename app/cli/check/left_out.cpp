@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"

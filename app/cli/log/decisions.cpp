@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/cli/check/check_suggestions.hpp"
 #include "app/text/structure_text.hpp"

@@ -1,7 +1,5 @@
 #include "app/cli/log/log_configuration.hpp"
 
-#include <algorithm>
-
 namespace modebank::app {
 namespace {
 

@@ -1,7 +1,5 @@
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "app/report/page/study_page.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"

@@ -1,6 +1,5 @@
 #include "app/report/page/window_modes.hpp"
 
-#include <cmath>
 #include <map>
 
 namespace modebank {

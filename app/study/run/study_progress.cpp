@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
-
 #include "app/text/duration_text.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"

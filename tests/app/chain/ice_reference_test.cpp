@@ -2,8 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdlib>
 
 #include "app/chain/chain.hpp"
 #include "app/config/config.hpp"

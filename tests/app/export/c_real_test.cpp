@@ -1,8 +1,6 @@
 // The exported C code on all held-out samples of a demo and of real robots, with unchanged configurations.
 #include <fmt/format.h>
 
-#include <cstdlib>
-
 #include "app/cli/live_filter.hpp"
 #include "app/config/config_file.hpp"
 #include "tests/app/cli_fixture.hpp"

@@ -6,7 +6,6 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <random>
-#include <vector>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"

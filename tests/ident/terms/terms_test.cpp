@@ -3,8 +3,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-
 #include "ident/model/equations.hpp"
 #include "ident/terms/find_terms.hpp"
 #include "ident/terms/stated_terms.hpp"

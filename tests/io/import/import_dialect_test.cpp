@@ -386,23 +386,6 @@ TEST_F(ImportDialect, RowsWithoutTimes) {
   EXPECT_EQ(data.recording.runs[0].state, row({1, 3, 5}));
 }
 
-TEST_F(ImportDialect, RobotArmOfDaisy) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  options.root = (test::shared_data_dir() / "sysid_classic").string();
-  options.inputs = "robot_arm.dat";
-  options.time.clear();
-  options.rate_hz = 1;
-  options.input = {"c1"};
-  options.state = {"c2"};
-  const Trajectory run = import().recording.runs.at(0);
-  ASSERT_EQ(run.samples(), 1024);
-  EXPECT_EQ(run.input(0, 0), 2.2183165e-01);
-  EXPECT_EQ(run.state(0, 4), 1.2806267e-01);
-  const auto sd = [](const Eigen::MatrixXd& x) { return std::sqrt((x.array() - x.mean()).square().mean()); };
-  EXPECT_NEAR(sd(run.input), 0.164430, 1e-4) << "as the data's README says";
-  EXPECT_NEAR(sd(run.state), 0.275098, 2e-4);
-}
-
 TEST_F(ImportDialect, AStampFarOutIsNamed) {
   for (const int out : {1, 17, log_rows - 1}) {
     write("log.csv", table("time,x,u\n", [&](int k) {
