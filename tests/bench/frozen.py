@@ -4,7 +4,7 @@
 frozen.py run PROGRAM CONFIGS DATA OUT [SET...]       learns every set afresh in one thread; 17 minutes of a processor
 frozen.py table OUT                                   prints the rows of the archives in OUT as CSV
 frozen.py compare OLD NEW [--reasons FILE] [--only SET...]
-    prints what moved; OLD, NEW: a folder of archives, or a CSV such as tests/golden/data/frozen_6a013144.csv
+    prints what moved; OLD, NEW: a folder of archives, or a CSV such as tests/golden/data/frozen_b1317748.csv
 frozen.py quick PROGRAM PARENT CONFIGS DATA OUT [--reasons FILE] [--parent-configs FOLDER]
     compares demo and one half of ICE, learned by both programs; two minutes
 
