@@ -84,7 +84,7 @@ ceres::Solver::Options model_solver_options(int iterations) {
   options.logging_type = ceres::SILENT;
   options.function_tolerance = 1e-16;
   options.gradient_tolerance = 1e-14;
-  options.parameter_tolerance = 1e-12;
+  options.parameter_tolerance = 1e-16;  // steps shrink slowly under robust losses
   options.max_num_consecutive_invalid_steps = most_invalid_model_steps;
   return options;
 }

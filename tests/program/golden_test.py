@@ -209,7 +209,7 @@ class Imports(Golden):
                            for part in ("knots", "expected"))
         inside = expected[(expected["time"] >= knots["time"][0]) & (expected["time"] <= knots["time"][-1])]
         (self.folder / "x.csv").write_text((GOLDEN / "interpolation_knots.csv").read_text())
-        lines = [f"{row['time']!r},{k % 3}" for k, row in enumerate(inside)]
+        lines = [f"{row['time'].item()!r},{k % 3}" for k, row in enumerate(inside)]
         (self.folder / "u.csv").write_text("\n".join(["time,u", *lines, ""]))
         found = self.archive("identify", "--window.model=linear", inputs="u.csv", states="x.csv", state="value",
                              input="u")
