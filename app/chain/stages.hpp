@@ -15,14 +15,6 @@
 /// for unusable data.
 namespace modebank {
 
-/// True if there are so many windows that they are written to the file during the fit.
-bool streams_windows(const Recording& recording, const WindowInputs& inputs);
-
-/// Fits windows and writes them to an archive that contains only the data of `before` and the windows. `report` is
-/// called for each block of windows. Returns the properties that all windows share.
-WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
-                              const std::function<void(const WindowFits&)>& report);
-
 /// Results and scores of one filter on every run.
 struct FilterScores {
   FilterEvaluation evaluation;

@@ -5,7 +5,7 @@
 
 #include <chrono>
 
-#include "app/text/duration_text.hpp"
+#include "app/text/number_text.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -17,12 +18,14 @@
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/summary_json.hpp"
 #include "app/config/option_table.hpp"
+#include "app/config/section.hpp"
 #include "app/config/valid_config.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/window_text.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
@@ -118,6 +121,28 @@ class Log : public Adviser {
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
 
 nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
+
+/// Whether there are so many windows that they are written to the file during the fit.
+bool streams_windows(const Recording& recording, const WindowInputs& inputs) {
+  constexpr Index in_memory = 1000000;  // largest number of windows in memory: about 150 MB for a model with three
+                                        // parameters
+  return count_windows(recording, inputs.window) > in_memory;
+}
+
+/// Fits windows and writes them to an archive that contains only the data of `before` and the windows. `report` is
+/// called for each block of windows. Returns the properties that all windows share.
+WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
+                              const std::function<void(const WindowFits&)>& report) {
+  const Recording& recording = *before.recording;
+  const auto produce = [&](const WindowSink& sink) {
+    const WindowSink report_and_sink = [&](const WindowFits& fits, Index first) {
+      report(fits);
+      sink(fits, first);
+    };
+    return in_section("window", [&] { return stream_windows(recording, inputs.window, report_and_sink); });
+  };
+  return write_archive(path, before, count_windows(recording, inputs.window), produce);
+}
 
 /// If there are too many windows for memory, writes them to the file during the fit.
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {

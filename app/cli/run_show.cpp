@@ -5,6 +5,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "app/text/number_text.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/mode_tables.hpp"
@@ -34,7 +35,8 @@ void print_overview(const CommandLine& line) {
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));
   if (archive.nonlinear)
     fmt::print("\none nonlinear motion (competitor nonlinear)\n{}", equations_text(archive, width));
-  fmt::print("{}{}", modes_in_words(archive, width), mode_diagnostics_text(archive, width));
+  fmt::print("{}{}", modes_in_words(archive, width, time_unit(resolved_values(archive.config))),
+             mode_diagnostics_text(archive, width));
 }
 
 /// Adds I to A in the datasets of A (K, n, n).

@@ -200,15 +200,18 @@ void guess_inputs(const std::vector<SurveyedFile>& files, const std::vector<Cand
 }
 
 /// An axis of a rate or acceleration that hardly moves is no state: a sister that moves takes its place.
-void leave_resting_axis(const std::vector<SurveyedFile>& files, ChannelPlace& state) {
+void leave_resting_axis(const std::vector<SurveyedFile>& files, ChannelPlace& state, Guess& guess) {
   constexpr double hardly = 0.02;
   const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
   const auto stem = [](const std::string& name) { return name.substr(0, name.size() - 1); };
   for (std::size_t c = 0; c < channels.size(); ++c)
     if (const SurveyedChannel& rests = channels[state.channel];
         is_motion_of_axes(rests.name) && is_motion_of_axes(channels[c].name) &&
-        stem(channels[c].name) == stem(rests.name) && rests.check.sd < hardly * channels[c].check.sd)
+        stem(channels[c].name) == stem(rests.name) && rests.check.sd < hardly * channels[c].check.sd) {
+      guess.reasons.push_back(
+          {fmt::format("{} hardly moves beside {}, which is taken", rests.name, channels[c].name), "state"});
       state.channel = c;
+    }
 }
 
 /// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up.
@@ -286,7 +289,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
   replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
   if (!guess.mounting)
-    for (ChannelPlace& state : guess.states) leave_resting_axis(files, state);
+    for (ChannelPlace& state : guess.states) leave_resting_axis(files, state, guess);
   return guess;
 }
 

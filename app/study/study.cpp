@@ -13,7 +13,7 @@
 #include "app/study/run/claim.hpp"
 #include "app/study/run/run_trials.hpp"
 #include "app/study/run/study_progress.hpp"
-#include "app/text/duration_text.hpp"
+#include "app/text/number_text.hpp"
 #include "io/archive/archive_form.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"

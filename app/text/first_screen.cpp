@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/text/duration_text.hpp"
+#include "app/text/number_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
@@ -51,9 +51,10 @@ std::string file_line(const std::string& file, int columns) {
 }
 
 /// The section on modes, at most `lines` lines. Two of these are headings.
-std::string modes_section(const Archive& archive, const FirstScreen& screen, int lines, int columns) {
+std::string modes_section(const Archive& archive, const FirstScreen& screen, int lines, int columns,
+                          const std::string& unit) {
   const std::string indent(2, ' ');
-  ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()));
+  ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()), unit);
   std::string& table = modes.text;
   boost::algorithm::trim_right(table);
   boost::replace_all(table, "\n", "\n" + indent);
@@ -117,7 +118,7 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   const FirstScreen screen = make_first_screen(archive, settings);
   const int columns = width > 0 ? std::clamp(width, least_columns, screen_columns) : screen_columns;
   const auto part = [&](const char* label, const std::string& text, int most) {
-    return section(label, in_samples(archive.config, as_typed(text, archive, program, file)), most, columns);
+    return section(label, as_typed(text, archive, program, file), most, columns);
   };
   const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
                              part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);
@@ -126,7 +127,7 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
                             part("warning", screen.warning, screen_lines) + part("next", screen.next, 3) +
                             part("use", screen.use, 3) + file_line(file, columns);
   const int mode_lines = std::max(screen_lines - line_count(before) - line_count(after), least_mode_lines);
-  return before + modes_section(archive, screen, mode_lines, columns) + after;
+  return before + modes_section(archive, screen, mode_lines, columns, time_unit(settings)) + after;
 }
 
 }  // namespace modebank::app

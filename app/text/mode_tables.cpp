@@ -6,7 +6,6 @@
 #include <boost/algorithm/string.hpp>
 #include <cmath>
 
-#include "app/text/duration_text.hpp"
 #include "app/text/mode_names.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/robot_numbers.hpp"
@@ -45,11 +44,12 @@ std::string family_cell(const ModeFamily& family, bool several) {
 
 /// Time constant of a family. The period is omitted here; `show` prints it for each mode. A mean over several modes is
 /// printed as it is. Its error does not show whether one of the modes may never die out.
-std::string time_words(const ModeFamily& family) {
+std::string time_words(const ModeFamily& family, const std::string& unit) {
   Decay slowest = family.slowest;
   slowest.frequency_hz = 0.0;
   const bool mean = family.counted.size() > 1 && std::isfinite(slowest.time_constant_s);
-  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s" : decay_words(slowest);
+  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " " + unit
+              : decay_words(slowest, "+-", unit);
 }
 
 /// The track width [m] of each family, for a robot with two rows of wheels; empty for other systems.
@@ -76,7 +76,7 @@ std::vector<std::string> family_headings(const GainNames& gains, bool several, b
 }
 
 std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vector<ModeFamily>& families, bool several,
-                                        const std::vector<std::string>& tracks) {
+                                        const std::vector<std::string>& tracks, const std::string& unit) {
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
@@ -84,8 +84,8 @@ std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vecto
     const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
     ModeTable::Row row{family.modes,
                        family.title(),
-                       {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay),
-                        no_decays ? not_identifiable : time_words(family)}};
+                       {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay, unit),
+                        no_decays ? not_identifiable : time_words(family, unit)}};
     if (!tracks.empty()) row.cells.push_back(tracks[rows.size()]);
     const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
@@ -117,7 +117,7 @@ int widest_line(const std::string& text) {
 }
 
 /// A table of all modes with all of their decays.
-std::string all_modes(const Archive& archive, const GainNames& gains, int width) {
+std::string all_modes(const Archive& archive, const GainNames& gains, int width, const std::string& unit) {
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<std::string> headings{"mode", "used", "stay", "decay/sample", "time constant"};
@@ -126,11 +126,11 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width)
   for (const UsedMode& used : used_modes(archive)) {
     const ModeDynamics dynamics = mode_dynamics(*archive.bank, used.mode);
     std::vector<std::string> times;
-    for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay));
+    for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay, "+-", unit));
     ModeTable::Row row{{used.mode},
                        mode_title(archive.mode_names, used.mode),
                        {shortened(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
-                        stay_words(used), no_decays ? "-" : per_sample_words(dynamics.decays),
+                        stay_words(used, unit), no_decays ? "-" : per_sample_words(dynamics.decays),
                         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
     const std::vector<std::string> cells = gain_cells(dynamics.gain, dynamics.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), cells.begin(), cells.end());
@@ -141,7 +141,7 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width)
 
 /// A table of the families, with the modes of each family and the modes that enter its means. Empty unless some family
 /// has several modes.
-std::string all_families(const Archive& archive, const GainNames& gains, int width) {
+std::string all_families(const Archive& archive, const GainNames& gains, int width, const std::string& unit) {
   const std::vector<ModeFamily> families = mode_families(archive);
   if (!some_have_several(families)) return "";
   std::string text =
@@ -149,7 +149,7 @@ std::string all_families(const Archive& archive, const GainNames& gains, int wid
       "differences between the modes\n";
   const std::vector<std::string> tracks = track_cells(archive, families);
   text = wrapped(text, width) + text_of(family_headings(gains, true, !tracks.empty()),
-                                        family_rows(archive, families, true, tracks), true, width);
+                                        family_rows(archive, families, true, tracks, unit), true, width);
   for (const ModeFamily& family : families) {
     if (family.modes.size() == 1) continue;
     std::string line = family.title();
@@ -162,7 +162,7 @@ std::string all_families(const Archive& archive, const GainNames& gains, int wid
 
 }  // namespace
 
-ModeTable mode_table(const Archive& archive, Index rows) {
+ModeTable mode_table(const Archive& archive, Index rows, const std::string& unit) {
   std::vector<ModeFamily> families = mode_families(archive);
   const bool several = some_have_several(families);
   const auto all = static_cast<Index>(families.size());
@@ -176,14 +176,12 @@ ModeTable mode_table(const Archive& archive, Index rows) {
   ModeTable table{family_headings(gains, several, !tracks.empty()), {}, all, all - shown, 0.0, gains.unit};
   for (Index i = shown; i < all; ++i) table.others_use += use[static_cast<std::size_t>(i)];
   families.resize(static_cast<std::size_t>(shown));
-  table.rows = family_rows(archive, families, several, tracks);
-  for (ModeTable::Row& row : table.rows)
-    for (std::string& cell : row.cells) cell = in_samples(archive.config, cell);
+  table.rows = family_rows(archive, families, several, tracks, unit);
   return table;
 }
 
-ShortModes short_modes(const Archive& archive, Index rows, int width) {
-  ModeTable table = mode_table(archive, rows);
+ShortModes short_modes(const Archive& archive, Index rows, int width, const std::string& unit) {
+  ModeTable table = mode_table(archive, rows, unit);
   const bool left = !archive.mode_names.empty() || table.families < archive.bank->mode_count();
   ShortModes result{text_of(table.headings, table.rows, left, 0), 0};
   const std::size_t without_gains = table.headings.size() - gains_of(archive).names.size();
@@ -199,11 +197,11 @@ ShortModes short_modes(const Archive& archive, Index rows, int width) {
   return result;
 }
 
-std::string modes_in_words(const Archive& archive, int width) {
+std::string modes_in_words(const Archive& archive, int width, const std::string& unit) {
   if (!archive.bank) return "";
   const GainNames gains = gains_of(archive);
   return fmt::format("\nmodes in words{}\n", gains.unit.empty() ? "" : fmt::format("; gains in {}", gains.unit)) +
-         all_modes(archive, gains, width) + all_families(archive, gains, width);
+         all_modes(archive, gains, width, unit) + all_families(archive, gains, width, unit);
 }
 
 }  // namespace modebank::app

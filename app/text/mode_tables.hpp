@@ -25,15 +25,16 @@ struct ModeTable {
 };
 /// The table with at most `rows` rows. Its last row may stand for all other families. 0: all families that `told_of`
 /// counts.
-ModeTable mode_table(const Archive& archive, Index rows = 0);
+/// `unit`: that of times, here and below.
+ModeTable mode_table(const Archive& archive, Index rows = 0, const std::string& unit = "s");
 
 /// The table as text: a heading and at most `rows` lines of `width` columns. Gains that do not fit are omitted.
 struct ShortModes {
   std::string text;
   Index gains_left_out = 0;
 };
-ShortModes short_modes(const Archive& archive, Index rows, int width);
+ShortModes short_modes(const Archive& archive, Index rows, int width, const std::string& unit = "s");
 /// All families and all modes with all numbers, for `show`. `width`: 0 means no limit.
-std::string modes_in_words(const Archive& archive, int width = 0);
+std::string modes_in_words(const Archive& archive, int width = 0, const std::string& unit = "s");
 
 }  // namespace modebank::app

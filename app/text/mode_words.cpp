@@ -61,14 +61,14 @@ std::vector<bool> unidentifiable_gains(const Archive& archive, const LinearStruc
   return unidentifiable;
 }
 
-std::string decay_words(const Decay& decay, const char* plus_minus) {
+std::string decay_words(const Decay& decay, const char* plus_minus, const std::string& unit) {
   const double time = decay.time_constant_s, least = least_time_constant(decay);
   std::string text = std::isinf(time) ? "integrates"
-                     : least > 0.0    ? fmt::format("over {:.2g} s", least)
-                     : time < 0.0     ? fmt::format("unstable: grows e-fold in {:.3g} s", -time)
+                     : least > 0.0    ? fmt::format("over {:.2g} {}", least, unit)
+                     : time < 0.0     ? fmt::format("unstable: grows e-fold in {:.3g} {}", -time, unit)
                      : time == 0.0    ? "at once"
-                                      : estimate_text(time, decay.time_constant_error_s, plus_minus) + " s";
-  if (decay.frequency_hz > 0.0) text += fmt::format(", period {:.3g} s", 1.0 / decay.frequency_hz);
+                                      : estimate_text(time, decay.time_constant_error_s, plus_minus) + " " + unit;
+  if (decay.frequency_hz > 0.0) text += fmt::format(", period {:.3g} {}", 1.0 / decay.frequency_hz, unit);
   return text;
 }
 
@@ -97,8 +97,8 @@ UsedMode with_stay(const Archive& archive, Index mode, double use, const Diagnos
 
 }  // namespace
 
-std::string stay_words(const UsedMode& mode) {
-  return std::isnan(mode.stay_s) ? "-" : fmt::format("{}{:.3g} s", mode.at_least ? "over " : "", mode.stay_s);
+std::string stay_words(const UsedMode& mode, const std::string& unit) {
+  return std::isnan(mode.stay_s) ? "-" : fmt::format("{}{:.3g} {}", mode.at_least ? "over " : "", mode.stay_s, unit);
 }
 
 std::vector<UsedMode> used_modes(const Archive& archive) {

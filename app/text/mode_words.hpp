@@ -12,7 +12,8 @@ namespace modebank::app {
 
 /// Text such as "0.163 +- 0.004 s", "integrates" or "unstable: grows e-fold in 2 s". If, within the standard error, the
 /// mode may never die out, the text is "over 3 s". For a mode that oscillates, it ends in ", period 0.5 s".
-std::string decay_words(const Decay& decay, const char* plus_minus = "+-");
+/// `unit`: that of times.
+std::string decay_words(const Decay& decay, const char* plus_minus = "+-", const std::string& unit = "s");
 /// Factor per sample for each eigenvalue or pair, the slowest first.
 std::string per_sample_words(const std::vector<Decay>& decays);
 
@@ -26,7 +27,7 @@ struct UsedMode {
   bool at_least = false;
 };
 /// Text such as "6.61 s" or "over 60 s"; "-" if the mode was never entered.
-std::string stay_words(const UsedMode& mode);
+std::string stay_words(const UsedMode& mode, const std::string& unit = "s");
 /// The modes of the bank, the most used first. If no run was scored, the use is the mode's weight.
 std::vector<UsedMode> used_modes(const Archive& archive);
 

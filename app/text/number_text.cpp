@@ -49,4 +49,22 @@ std::string with_degrees(double value, const std::string& unit) {
   return fmt::format("{} ({:.3g} deg{})", text, 180.0 / std::numbers::pi * value, unit.substr(3));
 }
 
+std::string duration_text(double seconds) {
+  if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
+  if (seconds < 7200.0) return fmt::format("{:.3g} min", seconds / 60.0);
+  return fmt::format("{:.3g} h", seconds / 3600.0);
+}
+
+std::string rate_text(double per_second) {
+  return per_second >= 0.1 ? fmt::format("{:.3g} per s", per_second) : fmt::format("{:.3g} per h", 3600.0 * per_second);
+}
+
+std::string time_unit(const std::map<std::string, std::string>& settings) {
+  const auto is = [&](const char* key, const char* value) {
+    const auto found = settings.find(key);
+    return found != settings.end() && found->second == value;
+  };
+  return is("data.time", "") && is("data.rate_hz", "1") ? "samples" : "s";
+}
+
 }  // namespace modebank::app

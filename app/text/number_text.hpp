@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <string>
 
 namespace modebank::app {
@@ -27,5 +28,15 @@ std::string size_list(const Values& values, int decimals) {
   for (const double value : values) text += (text.empty() ? "" : " ") + size_text(value, decimals);
   return text;
 }
+
+/// A duration such as "3 s", "4.2 min" or "1.5 h".
+std::string duration_text(double seconds);
+
+/// A rate such as "12.3 per s" or "40 per h".
+std::string rate_text(double per_second);
+
+/// The unit in which the screen counts time: "samples" if the log has neither times nor a stated rate, else "s".
+/// `settings`: the archive's resolved configuration.
+std::string time_unit(const std::map<std::string, std::string>& settings);
 
 }  // namespace modebank::app

@@ -54,9 +54,11 @@ std::string read_words(const Archive& archive, const Settings& settings) {
   const Index steps = recording.transitions(Role::train);
   const bool held_out = std::any_of(recording.runs.begin(), recording.runs.end(),
                                     [](const Trajectory& t) { return t.role == Role::test; });
-  std::string text = fmt::format("{}{}, steps of {:.3g} s; the models predict {}", runs(Role::train),
-                                 held_out ? " and " + runs(Role::test) : ", none held out", recording.median_period_s(),
-                                 channel_words(recording.states));
+  const std::string period =
+      time_unit(settings) == "s" ? fmt::format("steps of {:.3g} s", recording.median_period_s()) : "without times";
+  std::string text =
+      fmt::format("{}{}, {}; the models predict {}", runs(Role::train),
+                  held_out ? " and " + runs(Role::test) : ", none held out", period, channel_words(recording.states));
   if (!recording.inputs.empty()) text += " from " + channel_words(recording.inputs);
   if (const double lag_s = input_lag(archive, settings); lag_s != 0.0) text += "; " + lag_words(lag_s, recording);
   if (archive.learned_transitions > 0)
@@ -166,7 +168,7 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   add_scores(screen, archive);
   if (archive.bank) {
     screen.mode_count = archive.bank->mode_count();
-    screen.modes = mode_table(archive);
+    screen.modes = mode_table(archive, 0, time_unit(settings));
   }
   return screen;
 }

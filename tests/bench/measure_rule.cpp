@@ -18,7 +18,6 @@
 #include <random>
 #include <string>
 #include <string_view>
-#include <utility>
 #include <vector>
 
 #include "filter/learn/competitors/noise_by_input.hpp"

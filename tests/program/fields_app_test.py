@@ -1,9 +1,8 @@
 """Logs and mistakes of the field: which columns `init` takes and names, which files stay, what sbatch may print."""
-import json
 import os
 import shutil
 
-from program import ProgramTest, main, modebank, np
+from program import ProgramTest, main, modebank, np, proposal
 
 
 def plant(samples=600, seed=1):
@@ -24,16 +23,11 @@ class FieldTest(ProgramTest):
         rows = np.column_stack(list(columns.values()))
         np.savetxt(self.folder / name, rows, "%.12g", ",", header=header or ",".join(columns), comments="")
 
-    def init(self, *files):
-        """The proposed keys and the doubts."""
-        told = json.loads(self.run_program("init", *files, "-o", "x.ini", "--force", "--json"))
-        return {entry["key"]: entry["value"] for entry in told["keys"]}, "\n".join(told["doubts"])
-
 
 class Columns(FieldTest):
     def expect(self, state, inputs, *files):
-        keys, doubts = self.init(*files or ["log.csv"])
-        self.assertEqual((keys["data.state"], keys.get("data.input", "")), (state, inputs))
+        keys, doubts, _ = proposal(self.folder, *files or ["log.csv"])
+        self.assertEqual((keys["state"], keys.get("input", "")), (state, inputs))
         return keys, doubts
 
     def test_movement_outweighs_words(self):
@@ -44,7 +38,7 @@ class Columns(FieldTest):
         t, u, x = plant()
         noise = 0.001 * np.random.default_rng(7).standard_normal(len(t))
         self.write("log.csv", time=t, gyro_x=x, gyro_y=noise[::-1], gyro_z=noise, cmd=u)
-        self.assertIn("gyro_z", self.expect("gyro_x", "cmd")[1])
+        self.assertIn("gyro_z hardly moves beside gyro_x", self.expect("gyro_x", "cmd")[1])
         self.write("log.csv", "Ewe/V,time/s,I/mA,Efficiency/%,Q/mA.h", a=x, b=t, c=u, d=100 * (t > 9), e=np.cumsum(u))
         self.expect("Ewe/V", "I/mA")
 
@@ -60,7 +54,7 @@ class Columns(FieldTest):
         self.write("log.csv", time=t, level_setpoint_cm=goal, level_cm=x, temperature=np.cos(t), pump_pct=u)
         self.expect("level_cm", "pump_pct")
         self.write("log.csv", time=t, speed_setpoint=goal, speed=x, collective=u)
-        self.assertIn("collective", self.expect("speed", "speed_setpoint, collective")[0]["data.input"])
+        self.assertIn("collective", self.expect("speed", "speed_setpoint, collective")[0]["input"])
 
     def test_clocks_counters_and_ends_are_no_signals(self):
         t, u, x = plant()
@@ -68,13 +62,13 @@ class Columns(FieldTest):
         end, frame = np.arange(len(t)) == len(t) - 1, np.arange(len(t)) // 3
         self.write("log.csv", s=np.floor(stamp), ns=np.round(stamp % 1 * 1e9), y=x, u=u, frame=frame, end=end, done=end)
         keys, doubts = self.expect("y", "u")
-        self.assertEqual((keys["data.time"], "frame" in doubts), ("s, ns", False))
+        self.assertEqual((keys["time"], "frame" in doubts), ("s, ns", False))
 
     def test_angles_that_wrap_and_inputs_at_their_limit(self):
         t, u, x = plant()
         self.write("log.csv", time=t, heading_deg=np.cumsum(20 + 9 * x) % 360, throttle=np.clip(60 + 80 * u, 0, 100))
         keys, doubts = self.expect("heading_deg_unwrapped", "throttle")
-        self.assertIn("unwrap", keys["data.derive"])
+        self.assertIn("unwrap", keys["derive"])
         self.assertIn("throttle stands at its limit, 100", doubts)
 
     def test_stated_keys_settle_doubts(self):
@@ -90,7 +84,7 @@ class Columns(FieldTest):
         self.write("log.csv", speed=x, throttle=u)
         screen = self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine",
                                   "none", "--mixture.components", 1).split("\nread ")[1]
-        self.assertRegex(screen, r"steps of 1 samples[^$]*\d samples +\d")
+        self.assertRegex(screen, r"without times[^$]*\d samples +\d")
         self.assertNotRegex(screen.split("files")[0], r"\d s\b")
 
 

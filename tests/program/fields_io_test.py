@@ -2,14 +2,13 @@
 
 Every log moves by v(k+1) = 0.9 v(k) + 0.1 u(k), so a pair of numbers shows whether rows, names and times are right.
 """
-import json
 import re
 import sqlite3
 import struct
 import subprocess
 import sys
 
-from program import ProgramTest, h5py, main, modebank, np
+from program import ProgramTest, h5py, main, modebank, np, proposal
 
 HEAD, TIMES = "time,speed,throttle", ["%.2f" % (0.05 * k) for k in range(400)]
 
@@ -44,15 +43,9 @@ class Fields(ProgramTest):
     def write(self, name, *lines):
         (self.folder / name).write_text("\n".join([*lines, ""]))
 
-    def proposal(self, file):
-        """The keys of init's proposal, its doubts, and the first table."""
-        told = json.loads(self.modebank("init", file, "-o", "log.ini", "--yes", "--force", "--json").stdout)
-        keys = {key["key"].removeprefix("data."): key["value"] for key in told["keys"]}
-        return keys, " ".join(told["doubts"]), told["files"][0]["tables"][0]
-
     def learned(self):
         """Rows of each run and the median step of the configuration's data, whose motion must be the drive's."""
-        self.modebank("identify", "log.ini", "--archive.output", "out.h5", "--force", "--window.model", "linear",
+        self.modebank("identify", "x.ini", "--archive.output", "out.h5", "--force", "--window.model", "linear",
                       "--data.missing", "gap")
         with h5py.File(self.folder / "out.h5") as file:
             data = {name: file["data"][name][()] for name in ("runs", "time", "state", "input")}
@@ -65,12 +58,12 @@ class Fields(ProgramTest):
 
     def expect(self, file, step, fewest, state="speed", throttle="throttle"):
         """That init reads a log rightly: its channels, the step, and at least so many rows."""
-        keys, doubts, table = self.proposal(file)
+        keys, doubts, tables = proposal(self.folder, file)
         self.assertEqual((keys["state"], keys["input"]), (state, throttle))
         lengths, period = self.learned()
         self.assertAlmostEqual(period, step, delta=0.02 * step)
         self.assertGreaterEqual(sum(lengths), fewest)
-        return keys, doubts, table
+        return keys, doubts, tables[0]
 
     def refused(self, file, module, *names, status=1):
         """That a refusal names these objects, and that its lines of Python run, if the module is there."""
@@ -107,7 +100,7 @@ class Fields(ProgramTest):
         _, _, table = self.expect("log.csv", 0.05, 360)
         self.assertEqual([channel["missing"] for channel in table["channels"]], [0, 4, 0])
         self.write("log.csv", HEAD, *[line.replace("1.#QNAN", "#void") for line in lines])
-        self.write("log.ini", "[data]", "inputs = log.csv", "state = speed", "input = throttle", 'na = "#void"',
+        self.write("x.ini", "[data]", "inputs = log.csv", "state = speed", "input = throttle", 'na = "#void"',
                    "split = last 20 %")
         self.learned()
 
@@ -239,13 +232,13 @@ class Fields(ProgramTest):
             for joints in (order, [("pan", np.sin(k))]):
                 base.execute("INSERT INTO messages VALUES(1, ?, ?)", (ns, joint_state(ns, *zip(*joints))))
         base.commit()
-        self.write("log.ini", "[data]", "inputs = log.db3", "state = /joint_states.velocity{left}",
+        self.write("x.ini", "[data]", "inputs = log.db3", "state = /joint_states.velocity{left}",
                    "input = /joint_states.velocity{right}", "split = last 20 %")
         self.assertGreaterEqual(sum(self.learned()[0]), 370)
         base.execute("DELETE FROM messages WHERE rowid % 2 = 0")
         base.commit()
         base.close()
-        self.assertRegex(self.proposal("log.db3")[0]["derive"], "velocity{(left|right)}")
+        self.assertRegex(proposal(self.folder, "log.db3")[0]["derive"], "velocity{(left|right)}")
 
 
 if __name__ == "__main__":

@@ -99,27 +99,32 @@ class Windows(Golden):
         self.close(found["windows/r_squared"], case["r_squared"], 1e-11)
         self.close(found["windows/aic"], case["aic"], 1e-9)
 
-
     def test_structures_are_scored_as_numpy_scores_them(self):
         """Least squares on the rows that the most lags leave (12 of each, delays to 12), run r in fold r mod 5."""
-        draw, runs = np.random.default_rng(3), []
-        for r in range(8):
-            n = 150 + 7 * r
-            y, u = np.zeros((n, 2)), np.repeat(draw.normal(size=(n // 3 + 1, 1)), 3, 0)[:n]
-            for k in range(1, n - 1):
-                y[k + 1] = y[k] @ [[0.9, -0.2], [0.1, 0.7]] - 0.2 * y[k - 1] + u[k] * [0.3, -0.1] + 0.2
-                y[k + 1] += 0.05 * draw.standard_t(3, 2)
-            y[17, 1] = np.nan if r == 2 else y[17, 1]
-            names = self.write(f"run_{r}.csv", y, u)
-            runs.append((y, u))
-        said = self.archive("identify", "--window.loss=trivial", "--window.intercept=true", inputs="run_*.csv", test=7,
-                            state=names["x"], input=names["u"], missing="predict")["structure/scores"]
-        rows = [(y, u, k, r % 5) for r, (y, u) in enumerate(runs[:7]) for k in range(22, len(y) - 1)
+        for delay, words, first in ((1, (), 22), (1, ("--window.input_delay=0",), 11), (3, (), 22)):
+            draw, runs = np.random.default_rng(3), []
+            for r in range(8):
+                n = 150 + 7 * r
+                y, u = np.zeros((n, 2)), np.repeat(draw.normal(size=(n // 3 + 1, 1)), 3, 0)[:n]
+                for k in range(3, n - 1):
+                    y[k + 1] = y[k] @ [[0.9, -0.2], [0.1, 0.7]] - 0.2 * y[k - 1] + u[k + 1 - delay] * [0.3, -0.1] + 0.2
+                    y[k + 1] += 0.05 * draw.standard_t(3, 2)
+                y[17, 1] = np.nan if r == 2 else y[17, 1]
+                names = self.write(f"run_{r}.csv", y, u)
+                runs.append((y, u))
+            said = self.archive("identify", "--window.loss=trivial", "--window.intercept=true", *words, test=7,
+                                inputs="run_*.csv", state=names["x"], input=names["u"], missing="predict")
+            with self.subTest(delay=delay, words=words):
+                self.check_scores(said["structure/scores"], runs[:7], first)
+
+    def check_scores(self, said, runs, first):
+        rows = [(y, u, k, r % 5) for r, (y, u) in enumerate(runs) for k in range(first, len(y) - 1)
                 if not np.isnan(y[k - 11:k + 2]).any()]
         folds, Y = np.array([fold for *_, fold in rows]), np.array([y[k + 1] - y[k] for y, u, k, _ in rows])
         for of in said[np.isfinite(said["log_score"])]:
             at = of["input_delay"] - 1 + np.arange(of["input_lags"])
-            X = np.array([np.r_[y[k - np.arange(of["state_lags"])].ravel(), u[k - at].ravel(), 1] for y, u, k, _ in rows])
+            lags = np.arange(of["state_lags"])
+            X = np.array([np.r_[y[k - lags].ravel(), u[k - at].ravel(), 1] for y, u, k, _ in rows])
             e = np.concatenate([Y[folds == f] - X[folds == f] @ np.linalg.lstsq(X[folds != f], Y[folds != f], None)[0]
                                 for f in range(5)])
             self.close(of["rmse"], np.sqrt((e**2).mean(axis=0)), 1e-12)
@@ -228,6 +233,15 @@ class RealData(Golden):
         """Blocks of the Husky under random commands, all of which train. These tests need few windows."""
         return self.archive("identify", "--window.length=100", "--window.step=100", *options,
                             train=", ".join(map(str, range(201))), **{**self.DRIVE, **data})
+
+    def test_the_robot_arm_is_numpys(self):
+        """A text without header and times, in exponents (DaISy)."""
+        found = self.archive("identify", "--window.model=linear", root=DATA, inputs="sysid_classic/robot_arm.dat",
+                             time="", rate_hz=1, input="c1", state="c2", split="last 50 %")
+        values, read = np.loadtxt(DATA / "sysid_classic/robot_arm.dat"), np.c_[found["data/input"], found["data/state"]]
+        first, second = found["data/runs"]["samples"]  # samples between them are dropped
+        self.assertEqual(values.shape, (1024, 2))
+        np.testing.assert_array_equal(read, np.vstack([values[:first], values[-second:]]))
 
     def test_ice_is_numpys(self):
         expected = np.genfromtxt(GOLDEN / "ice_import.csv", delimiter=",", names=True, dtype=None, encoding=None)

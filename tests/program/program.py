@@ -43,6 +43,13 @@ def facts(*words, **options):
     return json.loads(modebank(*words, "--json", **options).stdout)
 
 
+def proposal(folder, *files):
+    """What `init` proposes for logs, in x.ini: its keys of [data], its doubts, and the tables of the first file."""
+    told = facts("init", *files, "-o", "x.ini", "--force", cwd=folder)
+    keys = {entry["key"].removeprefix("data."): entry["value"] for entry in told["keys"]}
+    return keys, "\n".join(told["doubts"]), told["files"][0]["tables"]
+
+
 def new_folder(cleanup):
     """An empty folder, which `cleanup` is told to remove."""
     folder = pathlib.Path(tempfile.mkdtemp(prefix="modebank-program-test-"))

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "app/config/config_file.hpp"
-#include "app/config/edit_file.hpp"
 #include "app/init/proposal.hpp"
 
 namespace modebank::app {
@@ -29,9 +28,15 @@ class LogConfiguration {
   Config config(const std::filesystem::path& file, const std::filesystem::path& archive) const;
 
  private:
+  /// A key of another section than [data]; without a value a comment.
+  struct Key {
+    std::string section, name, value, why;
+    bool is(const std::string& key) const { return section + "." + name == key; }
+  };
+
   Proposal proposal_;
   std::string command_;
-  std::vector<KeyEdit> edits_;  ///< keys of sections other than [data]
+  std::vector<Key> keys_;
 };
 
 }  // namespace modebank::app

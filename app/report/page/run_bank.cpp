@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "app/config/config_file.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_families.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
+#include "app/text/number_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
@@ -18,9 +20,9 @@ namespace {
 using nlohmann::json;
 
 /// All time constants in one cell, the slowest first. The table sorts by the slowest.
-json decays_cell(const std::vector<Decay>& decays) {
+json decays_cell(const std::vector<Decay>& decays, const std::string& unit) {
   std::string text;
-  for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±");
+  for (const Decay& decay : decays) text += (text.empty() ? "" : "; ") + decay_words(decay, "±", unit);
   return number(decays.empty() ? 0.0 : decays.front().time_constant_s, text);
 }
 
@@ -38,13 +40,13 @@ json estimates(const Eigen::VectorXd& values, const Eigen::VectorXd& errors,
 }
 
 /// Adds the slowest mode of motion's decay per sample, and all time constants.
-void add_decays(json& row, const std::vector<Decay>& decays, bool unidentifiable) {
+void add_decays(json& row, const std::vector<Decay>& decays, bool unidentifiable, const std::string& unit) {
   const double slowest = decays.empty() || unidentifiable ? NAN : decays.front().per_sample;
   row["per_sample"] = number(slowest, unidentifiable ? "-" : per_sample_words(decays));
-  row["decays"] = unidentifiable ? number(NAN, not_identifiable) : decays_cell(decays);
+  row["decays"] = unidentifiable ? number(NAN, not_identifiable) : decays_cell(decays, unit);
 }
 
-json mode_row(const Archive& archive, const Bank& bank, Index k) {
+json mode_row(const Archive& archive, const Bank& bank, Index k, const std::string& unit) {
   const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
   const ModeDynamics dynamics = mode_dynamics(bank, k);
   const Eigen::VectorXd gain = dynamics.gain.transpose().reshaped(), error = dynamics.gain_error.transpose().reshaped();
@@ -56,7 +58,7 @@ json mode_row(const Archive& archive, const Bank& bank, Index k) {
       {"motion", estimates(mode.motion_theta, mode.motion_standard_error)},
       {"noise_sd", number_list(mode.Q.diagonal().head(std::min(n_y, mode.Q.rows())).cwiseSqrt())},
       {"gains", estimates(gain, error, unidentifiable_gains(archive, bank.structure))}};
-  add_decays(row, dynamics.decays, unidentifiable_decays(archive, bank.structure));
+  add_decays(row, dynamics.decays, unidentifiable_decays(archive, bank.structure), unit);
   return row;
 }
 
@@ -154,6 +156,7 @@ nlohmann::json bank_section(const Archive& archive) {
   const Bank& bank = *archive.bank;
   const Recording& recording = *archive.recording;
   const Units units(recording);
+  const std::string unit = time_unit(resolved_values(archive.config));
   const Role role = diagnosis(archive, "bank", Role::test) ? Role::test : Role::train;
   const std::vector<ModeFamily> families = mode_families(archive);
   const Index told = told_families(families);
@@ -165,17 +168,17 @@ nlohmann::json bank_section(const Archive& archive) {
       }));
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
-    modes.push_back(mode_row(archive, bank, k));
+    modes.push_back(mode_row(archive, bank, k, unit));
     modes.back()["name"] = name_of_mode(archive.mode_names, k);
     if (const DiagnosticsRow* row = diagnosis(archive, "bank", role, k)) add_diagnosis(modes.back(), *row, bank.dt_s);
   }
   for (const UsedMode& mode : used_modes(archive)) {
     json& row = modes[static_cast<std::size_t>(mode.mode)];
     row["use"] = number(mode.use, fmt::format("{:.1f} %", 100 * mode.use));
-    row["stay"] = number(mode.stay_s, stay_words(mode));  // same words as on the first screen
+    row["stay"] = number(mode.stay_s, stay_words(mode, unit));  // same words as on the first screen
   }
   return {{"modes", modes},
-          {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0) : json()},
+          {"baseline", archive.baseline ? mode_row(archive, *archive.baseline, 0, unit) : json()},
           {"role", name_of(role)},
           {"model", bank.model},
           {"dt_s", number(bank.dt_s)},
@@ -186,7 +189,7 @@ nlohmann::json bank_section(const Archive& archive) {
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
           {"noise_variance_name", with_unit("Measurement noise variance R", square_of(common_unit(recording.states)))},
           {"R", number_list(bank.R.diagonal())},
-          {"families", families_of(archive, families)},
+          {"families", families_of(archive, families, unit)},
           {"told_families", told},
           {"order", order},
           {"told", std::ssize(order) - others},

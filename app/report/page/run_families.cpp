@@ -15,13 +15,13 @@ namespace {
 using nlohmann::json;
 
 /// A mean over several modes is shown with its standard error. A single mode is shown as in its own row.
-json time_cell(const ModeFamily& family, bool unidentifiable) {
+json time_cell(const ModeFamily& family, bool unidentifiable, const std::string& unit) {
   const Decay& slowest = family.slowest;
   if (unidentifiable) return number(NAN, not_identifiable);
   if (family.counted.size() > 1 && std::isfinite(slowest.time_constant_s))
     return number(slowest.time_constant_s,
-                  estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " s");
-  return number(slowest.time_constant_s, decay_words(slowest, "±"));
+                  estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " " + unit);
+  return number(slowest.time_constant_s, decay_words(slowest, "±", unit));
 }
 
 json gains_cells(const ModeFamily& family, const std::vector<bool>& unidentifiable) {
@@ -43,7 +43,7 @@ std::vector<std::vector<Index>> told_groups(const std::vector<ModeFamily>& famil
 
 }  // namespace
 
-json families_of(const Archive& archive, const std::vector<ModeFamily>& families) {
+json families_of(const Archive& archive, const std::vector<ModeFamily>& families, const std::string& unit) {
   const LinearStructure& structure = archive.bank->structure;
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, structure);
   json list = json::array();
@@ -53,8 +53,8 @@ json families_of(const Archive& archive, const std::vector<ModeFamily>& families
                     {"name", family.name},
                     {"modes", family.modes},
                     {"use", number(family.use, fmt::format("{:.1f} %", 100 * family.use))},
-                    {"stay", number(family.stay_s, stay_words(stay))},
-                    {"decays", time_cell(family, unidentifiable_decays(archive, structure))},
+                    {"stay", number(family.stay_s, stay_words(stay, unit))},
+                    {"decays", time_cell(family, unidentifiable_decays(archive, structure), unit)},
                     {"gains", gains_cells(family, unidentifiable)}});
   }
   return list;

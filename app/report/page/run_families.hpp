@@ -11,7 +11,7 @@
 namespace modebank::app::report {
 
 /// For each family: title, modes, use, stay, time constant and gains.
-nlohmann::json families_of(const Archive& archive, const std::vector<ModeFamily>& families);
+nlohmann::json families_of(const Archive& archive, const std::vector<ModeFamily>& families, const std::string& unit);
 
 /// Number of families that have their own row. All other families share one row.
 Index told_families(const std::vector<ModeFamily>& families);

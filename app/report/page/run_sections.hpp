@@ -34,6 +34,10 @@ std::size_t most_signal_bytes(const Archive& archive, const Detail& detail);
 /// The signals of these runs in the finest detail that fits into `most` bytes.
 nlohmann::json affordable_runs_section(const Archive& archive, PageArrays& arrays, std::size_t bytes);
 
+/// The most probable mode of a filter over each window, by the mean of mode_probability over the window's transitions.
+/// -1 if it is unknown. `length`: number of transitions per window.
+Eigen::VectorXi window_modes(const std::vector<Window>& windows, Eigen::Index length,
+                             const FilterEvaluation& evaluation);
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays);
 nlohmann::json selection_section(const Archive& archive);
 nlohmann::json bank_section(const Archive& archive);

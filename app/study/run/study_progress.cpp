@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "app/text/duration_text.hpp"
+#include "app/text/number_text.hpp"
 #include "ident/base/printable.hpp"
 #include "io/files/standard_error.hpp"
 

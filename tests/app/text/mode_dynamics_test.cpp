@@ -7,7 +7,7 @@
 #include <limits>
 #include <numbers>
 
-#include "app/report/page/window_modes.hpp"
+#include "app/report/page/run_sections.hpp"
 
 namespace modebank {
 namespace {
@@ -131,11 +131,11 @@ TEST(WindowModes, TheMostProbableOverTheTransitions) {
   evaluation.mode_probability.resize(2, 5);
   evaluation.mode_probability << 0.9, 0.2, 0.3, std::nan(""), 0.9,  //
       0.1, 0.8, 0.7, std::nan(""), 0.1;
-  const Eigen::VectorXi modes = window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {"bank", {evaluation}});
+  const Eigen::VectorXi modes = app::report::window_modes({{0, 0}, {0, 2}, {0, 1}}, 2, {"bank", {evaluation}});
   EXPECT_EQ(modes(0), 1);  // from samples 1 and 2; no transition ends at the window's first sample
   EXPECT_EQ(modes(1), 0);  // from sample 4, because sample 3 is unknown
   EXPECT_EQ(modes(2), 1);
-  EXPECT_EQ(window_modes({{0, 2}}, 1, {"bank", {evaluation}})(0), -1);
+  EXPECT_EQ(app::report::window_modes({{0, 2}}, 1, {"bank", {evaluation}})(0), -1);
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 
 #include "filter/judge/run/drifting.hpp"
 #include "filter/learn/competitors/drifting.hpp"

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 
 #include "ident/fit/audit.hpp"
 #include "modebank/base/error.hpp"

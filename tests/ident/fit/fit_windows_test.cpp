@@ -4,7 +4,6 @@
 
 #include <Eigen/Cholesky>
 #include <algorithm>
-#include <cstring>
 
 #include "ident/fit/fit_window.hpp"
 #include "ident/fit/scale.hpp"

@@ -2,7 +2,6 @@
 
 #include <hdf5.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "io/archive/bank/open_archive.hpp"
@@ -223,23 +222,6 @@ void patch_number_attribute(const std::filesystem::path& path, const std::string
     H5Sclose(space);
     H5Tclose(type);
     H5Oclose(holder);
-  });
-}
-
-void link_to_file(const std::filesystem::path& path, const std::string& member, const std::string& elsewhere) {
-  craft(path, [&](hid_t file) {
-    if (H5Lexists(file, member.c_str(), H5P_DEFAULT) > 0) must(H5Ldelete(file, member.c_str(), H5P_DEFAULT));
-    must(H5Lcreate_external(elsewhere.c_str(), "/", file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
-  });
-}
-
-void link_to_place(const std::filesystem::path& path, const std::string& member, const std::string& place, bool hard) {
-  craft(path, [&](hid_t file) {
-    if (H5Lexists(file, member.c_str(), H5P_DEFAULT) > 0) must(H5Ldelete(file, member.c_str(), H5P_DEFAULT));
-    if (hard)
-      must(H5Lcreate_hard(file, place.c_str(), file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
-    else
-      must(H5Lcreate_soft(place.c_str(), file, member.c_str(), H5P_DEFAULT, H5P_DEFAULT));
   });
 }
 

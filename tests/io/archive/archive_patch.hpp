@@ -39,10 +39,6 @@ void patch_cell(const std::filesystem::path& path, const std::string& table, con
                 double value);
 void patch_number_attribute(const std::filesystem::path& path, const std::string& object, const std::string& name,
                             double value);
-/// Replaces the member by a link to the root of another file, or to another object of the same file.
-void link_to_file(const std::filesystem::path& path, const std::string& member, const std::string& file);
-void link_to_place(const std::filesystem::path& path, const std::string& member, const std::string& place, bool hard);
-
 /// Replaces the member by an array of `values` zeros, in chunks that were never written.
 void replace_by_chunks(const std::filesystem::path& path, const std::string& member,
                        const std::vector<unsigned long long>& shape);

@@ -1,4 +1,3 @@
-
 #include "tests/io/import/import_fixture.hpp"
 
 namespace modebank {

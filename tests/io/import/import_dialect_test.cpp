@@ -5,32 +5,23 @@
 #include <functional>
 
 #include "io/csv/csv_dialect.hpp"
-#include "tests/io/import/import_fixture.hpp"
+#include "tests/io/import/log_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
+using test::log_rows;
 using test::row;
+using test::seconds;
+using test::stamp_ns;
+using test::table;
+using test::u_of;
+using test::x_of;
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
-
-constexpr int log_rows = 40;
-constexpr std::int64_t epoch_ns = 1'714'557'600'000'000'000;  // 2024-05-01T10:00:00Z
-
-/// Stamps at 50 Hz with a jitter of microseconds. Every stamp is a whole number of microseconds.
-std::int64_t stamp_ns(int k) { return 20'000'000LL * k + 1'000LL * (k * 7 % 13); }
-double x_of(int k) { return 0.25 * k - 0.0625 * (k % 5); }
-double u_of(int k) { return 1.5 - 0.125 * (k % 7); }
-
-/// A table of time, x and u. `text(k)` writes row k.
-std::string table(const std::string& head, const std::function<std::string(int)>& text) {
-  std::string content = head;
-  for (int k = 0; k < log_rows; ++k) content += text(k) + "\n";
-  return content;
-}
 
 std::string with_commas(std::string text) {
   for (char& c : text) c = c == '.' ? ',' : c;
@@ -46,119 +37,11 @@ std::string utf16(const std::string& ascii, bool low_first) {
   return bytes;
 }
 
-std::string seconds(int k) { return fmt::format("{:.6f}", static_cast<double>(stamp_ns(k)) / 1e9); }
-
-class ImportDialect : public test::ImportFixture {
- protected:
-  ImportDialect() {
-    options.states.clear();
-    options.inputs = "log.csv";
-  }
-
-  ImportedData read(const std::string& content) {
-    write("log.csv", content);
-    return import();
-  }
-
-  static std::string plain() {
-    return table("time,x,u\n", [](int k) { return fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k)); });
-  }
-
-  /// Expects that `content` gives the values of plain(). Times count from the first sample.
-  void expect_plain(const std::string& content, std::int64_t origin_ns = 0) {
-    const Trajectory run = read(content).recording.runs.at(0);
-    ASSERT_EQ(run.samples(), log_rows);
-    EXPECT_EQ(run.time_origin_ns, origin_ns);
-    for (int k = 0; k < log_rows; ++k) {
-      EXPECT_EQ(run.time_s(k), static_cast<double>(stamp_ns(k)) / 1e9) << k;
-      EXPECT_EQ(run.state(0, k), x_of(k)) << k;
-      EXPECT_EQ(run.input(0, k), u_of(k)) << k;
-    }
-  }
-
-  std::vector<std::string> notes(const std::string& content) { return read(content).notes; }
-};
+class ImportDialect : public test::LogFixture {};
 
 TEST_F(ImportDialect, PlainIsNotTalkedAbout) {
   expect_plain(plain());
   EXPECT_THAT(notes(plain()), IsEmpty());
-}
-
-TEST_F(ImportDialect, NanosecondsOfAnEpochAreExact) {
-  const std::string content =
-      table("time,x,u\n", [](int k) { return fmt::format("{},{},{}", epoch_ns + stamp_ns(k), x_of(k), u_of(k)); });
-  expect_plain(content, epoch_ns);
-  EXPECT_THAT(notes(content), Contains(HasSubstr("column time counts nanoseconds")));
-}
-
-TEST_F(ImportDialect, MillisecondsAndMicrosecondsOfAnEpoch) {
-  expect_plain(table("time,x,u\n",
-                     [](int k) {
-                       return fmt::format("{}.{:03},{},{}", (epoch_ns + stamp_ns(k)) / 1'000'000,
-                                          stamp_ns(k) / 1000 % 1000, x_of(k), u_of(k));
-                     }),
-               epoch_ns);
-  expect_plain(table("time,x,u\n",
-                     [](int k) { return fmt::format("{},{},{}", (epoch_ns + stamp_ns(k)) / 1000, x_of(k), u_of(k)); }),
-               epoch_ns);
-}
-
-TEST_F(ImportDialect, SecondsOfAnEpochKeepTheirLastDigit) {
-  expect_plain(table("time,x,u\n",
-                     [](int k) {
-                       const std::int64_t stamp = epoch_ns + stamp_ns(k);
-                       return fmt::format("{}.{:09},{},{}", stamp / 1'000'000'000, stamp % 1'000'000'000, x_of(k),
-                                          u_of(k));
-                     }),
-               epoch_ns);
-}
-
-TEST_F(ImportDialect, UnitsThatSpacingNameOrOptionSay) {
-  const auto written = [](const std::string& name, std::int64_t ns_per_unit, std::int64_t start) {
-    return table(name + ",x,u\n",
-                 [&](int k) { return fmt::format("{},{},{}", start + stamp_ns(k) / ns_per_unit, x_of(k), u_of(k)); });
-  };
-  expect_plain(written("time", 1000, 0));  // stamps are 20000 apart, so they are microseconds
-  expect_plain(written("time", 1, 0));     // stamps are 20000000 apart, so they are nanoseconds
-  options.time = {"stamp_us"};
-  expect_plain(written("stamp_us", 1000, 0));
-  options.time = {"t"};
-  options.time_unit = TimeUnit::us;
-  expect_plain(written("t", 1000, 0));
-  options.time_unit = TimeUnit::s;
-  EXPECT_EQ(read(written("t", 1000, 0)).recording.runs[0].time_s(1), 20007.0) << "the option is believed";
-}
-
-TEST_F(ImportDialect, WholeNumbersInDoubtAreSecondsAndSaidToBe) {
-  const ImportedData data = read("time,x,u\n0,1,2\n10,2,3\n20,3,4\n30,4,5\n");
-  EXPECT_EQ(data.recording.runs[0].time_s(1), 10.0);
-  EXPECT_THAT(data.notes, Contains(HasSubstr("data.time_unit = ms")));
-}
-
-TEST_F(ImportDialect, IsoTimes) {
-  for (const auto& [pattern, shift_h] : {std::pair{"2024-05-01T10:{:02}:{:02}.{:06}Z", 0},
-                                         {"2024-05-01 10:{:02}:{:02}.{:06}", 0},
-                                         {"2024-05-01T12:{:02}:{:02}.{:06}+02:00", 0},
-                                         {"2024-05-01T08:{:02}:{:02}.{:06}-0200", 0}})
-    expect_plain(table("time,x,u\n",
-                       [&, text = pattern](int k) {
-                         const std::int64_t us = stamp_ns(k) / 1000;
-                         const std::string time =
-                             fmt::format(fmt::runtime(text), us / 60'000'000, us / 1'000'000 % 60, us % 1'000'000);
-                         return fmt::format("{},{},{}", time, x_of(k), u_of(k));
-                       }),
-                 epoch_ns + shift_h);
-}
-
-TEST_F(ImportDialect, SecondsAndNanosecondsInTwoColumns) {
-  options.time = {"secs", "nsecs"};
-  expect_plain(table("nsecs,secs,x,u\n",
-                     [](int k) {
-                       const std::int64_t stamp = epoch_ns + stamp_ns(k);
-                       return fmt::format("{},{},{},{}", stamp % 1'000'000'000, stamp / 1'000'000'000, x_of(k),
-                                          u_of(k));
-                     }),
-               epoch_ns);
 }
 
 TEST_F(ImportDialect, SemicolonsTabsPipesAndBlanks) {
@@ -386,20 +269,6 @@ TEST_F(ImportDialect, RowsWithoutTimes) {
   EXPECT_EQ(data.recording.runs[0].state, row({1, 3, 5}));
 }
 
-TEST_F(ImportDialect, AStampFarOutIsNamed) {
-  for (const int out : {1, 17, log_rows - 1}) {
-    write("log.csv", table("time,x,u\n", [&](int k) {
-            return fmt::format("{},{},{}", k == out ? 0 : epoch_ns + stamp_ns(k), x_of(k), u_of(k));
-          }));
-    EXPECT_THAT(error<DataError>(), AllOf(HasSubstr(fmt::format("log.csv:{}: column time: 0 s", out + 2)),
-                                          HasSubstr("differs by orders of magnitude")));
-  }
-  write("log.csv", table("time,x,u\n", [&](int k) {
-          return fmt::format("{},{},{}", (k < 22 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));
-        }));
-  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:24: column time")) << "a clock that was set on the way";
-}
-
 TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
   write("log.csv", table("t [ms],x [deg/s],u (m/s)\n", [&](int k) {
           return fmt::format("{:.6f},{},{}", static_cast<double>(stamp_ns(k)) / 1e6, x_of(k), u_of(k));
@@ -412,15 +281,6 @@ TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
   EXPECT_EQ(data.recording.inputs.front().unit, "m/s");
   EXPECT_NEAR(data.recording.runs.front().time_s(log_rows - 1), static_cast<double>(stamp_ns(log_rows - 1)) / 1e9,
               1e-9);
-}
-
-TEST_F(ImportDialect, DisorderIsExplained) {
-  write("log.csv", table("stamp.secs,x,u\n", [&](int k) { return fmt::format("{},{},{}", 100 + k / 10, 1, 2); }));
-  options.time = {"stamp.secs"};
-  EXPECT_THAT(error<DataError>(), HasSubstr("data.time = stamp.secs, stamp.nsecs"));
-  write("log.csv", table("time,x,u\n", [&](int k) { return fmt::format("{},{},{}", 0.1 * (k % 9), 1, 2); }));
-  options.time = {"time"};  // stretches of nine rows are too short for runs
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:11:"), HasSubstr("name their column in data.run")));
 }
 
 TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {

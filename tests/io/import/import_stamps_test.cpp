@@ -4,7 +4,7 @@
 #include <functional>
 
 #include "io/table/stamp_pattern.hpp"
-#include "tests/io/import/import_fixture.hpp"
+#include "tests/io/import/log_fixture.hpp"
 
 namespace modebank {
 namespace {
@@ -12,6 +12,12 @@ namespace {
 using ::testing::AllOf;
 using ::testing::Contains;
 using ::testing::HasSubstr;
+
+using test::epoch_ns;
+using test::log_rows;
+using test::stamp_ns;
+using test::u_of;
+using test::x_of;
 
 constexpr int stamped_rows = 300;
 
@@ -264,6 +270,111 @@ TEST_F(ImportStamps, TheEndOfSummerTimeIsNamed) {
           return fmt::format("2024-10-27 {:02}:{:02}", k < 60 ? minute / 60 : k / 60 + 1, minute % 60);
         }));
   EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:62"), HasSubstr("summer time")));
+}
+
+/// The log of LogFixture with other stamps.
+class StampsOfALog : public test::LogFixture {};
+
+TEST_F(StampsOfALog, NanosecondsOfAnEpochAreExact) {
+  const std::string content = test::table(
+      "time,x,u\n", [](int k) { return fmt::format("{},{},{}", epoch_ns + stamp_ns(k), x_of(k), u_of(k)); });
+  expect_plain(content, epoch_ns);
+  EXPECT_THAT(notes(content), Contains(HasSubstr("column time counts nanoseconds")));
+}
+
+TEST_F(StampsOfALog, MillisecondsAndMicrosecondsOfAnEpoch) {
+  expect_plain(test::table("time,x,u\n",
+                           [](int k) {
+                             return fmt::format("{}.{:03},{},{}", (epoch_ns + stamp_ns(k)) / 1'000'000,
+                                                stamp_ns(k) / 1000 % 1000, x_of(k), u_of(k));
+                           }),
+               epoch_ns);
+  expect_plain(
+      test::table("time,x,u\n",
+                  [](int k) { return fmt::format("{},{},{}", (epoch_ns + stamp_ns(k)) / 1000, x_of(k), u_of(k)); }),
+      epoch_ns);
+}
+
+TEST_F(StampsOfALog, SecondsOfAnEpochKeepTheirLastDigit) {
+  expect_plain(test::table("time,x,u\n",
+                           [](int k) {
+                             const std::int64_t stamp = epoch_ns + stamp_ns(k);
+                             return fmt::format("{}.{:09},{},{}", stamp / 1'000'000'000, stamp % 1'000'000'000, x_of(k),
+                                                u_of(k));
+                           }),
+               epoch_ns);
+}
+
+TEST_F(StampsOfALog, UnitsThatSpacingNameOrOptionSay) {
+  const auto written = [](const std::string& name, std::int64_t ns_per_unit, std::int64_t start) {
+    return test::table(name + ",x,u\n", [&](int k) {
+      return fmt::format("{},{},{}", start + stamp_ns(k) / ns_per_unit, x_of(k), u_of(k));
+    });
+  };
+  expect_plain(written("time", 1000, 0));  // stamps are 20000 apart, so they are microseconds
+  expect_plain(written("time", 1, 0));     // stamps are 20000000 apart, so they are nanoseconds
+  options.time = {"stamp_us"};
+  expect_plain(written("stamp_us", 1000, 0));
+  options.time = {"t"};
+  options.time_unit = TimeUnit::us;
+  expect_plain(written("t", 1000, 0));
+  options.time_unit = TimeUnit::s;
+  EXPECT_EQ(read(written("t", 1000, 0)).recording.runs[0].time_s(1), 20007.0) << "the option is believed";
+}
+
+TEST_F(StampsOfALog, WholeNumbersInDoubtAreSecondsAndSaidToBe) {
+  const ImportedData data = read("time,x,u\n0,1,2\n10,2,3\n20,3,4\n30,4,5\n");
+  EXPECT_EQ(data.recording.runs[0].time_s(1), 10.0);
+  EXPECT_THAT(data.notes, Contains(HasSubstr("data.time_unit = ms")));
+}
+
+TEST_F(StampsOfALog, IsoTimes) {
+  for (const auto& [pattern, shift_h] : {std::pair{"2024-05-01T10:{:02}:{:02}.{:06}Z", 0},
+                                         {"2024-05-01 10:{:02}:{:02}.{:06}", 0},
+                                         {"2024-05-01T12:{:02}:{:02}.{:06}+02:00", 0},
+                                         {"2024-05-01T08:{:02}:{:02}.{:06}-0200", 0}})
+    expect_plain(test::table("time,x,u\n",
+                             [&, text = pattern](int k) {
+                               const std::int64_t us = stamp_ns(k) / 1000;
+                               const std::string time = fmt::format(fmt::runtime(text), us / 60'000'000,
+                                                                    us / 1'000'000 % 60, us % 1'000'000);
+                               return fmt::format("{},{},{}", time, x_of(k), u_of(k));
+                             }),
+                 epoch_ns + shift_h);
+}
+
+TEST_F(StampsOfALog, SecondsAndNanosecondsInTwoColumns) {
+  options.time = {"secs", "nsecs"};
+  expect_plain(test::table("nsecs,secs,x,u\n",
+                           [](int k) {
+                             const std::int64_t stamp = epoch_ns + stamp_ns(k);
+                             return fmt::format("{},{},{},{}", stamp % 1'000'000'000, stamp / 1'000'000'000, x_of(k),
+                                                u_of(k));
+                           }),
+               epoch_ns);
+}
+
+TEST_F(StampsOfALog, AStampFarOutIsNamed) {
+  for (const int out : {1, 17, log_rows - 1}) {
+    write("log.csv", test::table("time,x,u\n", [&](int k) {
+            return fmt::format("{},{},{}", k == out ? 0 : epoch_ns + stamp_ns(k), x_of(k), u_of(k));
+          }));
+    EXPECT_THAT(error<DataError>(), AllOf(HasSubstr(fmt::format("log.csv:{}: column time: 0 s", out + 2)),
+                                          HasSubstr("differs by orders of magnitude")));
+  }
+  write("log.csv", test::table("time,x,u\n", [&](int k) {
+          return fmt::format("{},{},{}", (k < 22 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));
+        }));
+  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:24: column time")) << "a clock that was set on the way";
+}
+
+TEST_F(StampsOfALog, DisorderIsExplained) {
+  write("log.csv", test::table("stamp.secs,x,u\n", [&](int k) { return fmt::format("{},{},{}", 100 + k / 10, 1, 2); }));
+  options.time = {"stamp.secs"};
+  EXPECT_THAT(error<DataError>(), HasSubstr("data.time = stamp.secs, stamp.nsecs"));
+  write("log.csv", test::table("time,x,u\n", [&](int k) { return fmt::format("{},{},{}", 0.1 * (k % 9), 1, 2); }));
+  options.time = {"time"};  // stretches of nine rows are too short for runs
+  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:11:"), HasSubstr("name their column in data.run")));
 }
 
 TEST(StampPattern, ReadsWhatStrptimeReads) {

@@ -1,4 +1,3 @@
-#include <cstring>
 
 #include "io/recording/message_columns.hpp"
 #include "io/recording/message_reader.hpp"
