@@ -44,7 +44,7 @@ def facts(*words, **options):
 
 
 def proposal(folder, *files):
-    """What `init` proposes for logs, in x.ini: its keys of [data], its doubts, and the tables of the first file."""
+    """The proposal of `init` for logs, in x.ini: its keys of [data], its doubts, and the tables of the first file."""
     told = facts("init", *files, "-o", "x.ini", "--force", cwd=folder)
     keys = {entry["key"].removeprefix("data."): entry["value"] for entry in told["keys"]}
     return keys, "\n".join(told["doubts"]), told["files"][0]["tables"]
