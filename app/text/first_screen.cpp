@@ -8,8 +8,8 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "app/text/number_text.hpp"
 #include "app/text/judged_runs.hpp"
+#include "app/text/number_text.hpp"
 #include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/warnings.hpp"

@@ -7,10 +7,10 @@
 #include "app/report/page/run_families.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
-#include "app/text/number_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
+#include "app/text/number_text.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "io/archive/bank/units.hpp"
 
