@@ -42,16 +42,6 @@ std::string family_cell(const ModeFamily& family, bool several) {
   return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
 }
 
-/// Time constant of a family. The period is omitted here; `show` prints it for each mode. A mean over several modes is
-/// printed as it is. Its error does not show whether one of the modes may never die out.
-std::string time_words(const ModeFamily& family, const std::string& unit) {
-  Decay slowest = family.slowest;
-  slowest.frequency_hz = 0.0;
-  const bool mean = family.counted.size() > 1 && std::isfinite(slowest.time_constant_s);
-  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s) + " " + unit
-              : decay_words(slowest, "+-", unit);
-}
-
 /// The track width [m] of each family, for a robot with two rows of wheels; empty for other systems.
 std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
   if (!archive.recording) return {};
@@ -161,6 +151,14 @@ std::string all_families(const Archive& archive, const GainNames& gains, int wid
 }
 
 }  // namespace
+
+std::string time_words(const ModeFamily& family, const std::string& unit, const char* plus_minus) {
+  Decay slowest = family.slowest;
+  slowest.frequency_hz = 0.0;
+  const bool mean = family.counted.size() > 1 && std::isfinite(slowest.time_constant_s);
+  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s, plus_minus) + " " + unit
+              : decay_words(slowest, plus_minus, unit);
+}
 
 ModeTable mode_table(const Archive& archive, Index rows, const std::string& unit) {
   std::vector<ModeFamily> families = mode_families(archive);

@@ -9,6 +9,10 @@
 /// The bank's modes as tables. The first screen and the page show families. `show` also shows single modes.
 namespace modebank::app {
 
+/// Time constant of a family. The period is omitted here; each mode's own row has it. A mean over several modes is
+/// printed as it is. Its error does not show whether one of the modes may never die out.
+std::string time_words(const ModeFamily& family, const std::string& unit, const char* plus_minus = "+-");
+
 /// The most used families as text. Each row has modes, use, stay, slowest time constant and gains.
 struct ModeTable {
   struct Row {

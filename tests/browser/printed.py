@@ -1,7 +1,6 @@
 """Pages printed by `chromium --print-to-pdf`: every figure as on the screen, and no empty sheet."""
 import base64
 import hashlib
-import shutil
 import subprocess
 
 import numpy

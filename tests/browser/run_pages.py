@@ -1,6 +1,4 @@
 """Pages of runs."""
-import re
-import shutil
 
 import accessible
 import archives

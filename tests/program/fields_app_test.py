@@ -85,7 +85,8 @@ class Columns(FieldTest):
         screen = self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine",
                                   "none", "--mixture.components", 1).split("\nread ")[1]
         self.assertRegex(screen, r"without times[^$]*\d samples +\d")
-        self.assertNotRegex(screen.split("files")[0], r"\d s\b")
+        shown = self.run_program("show", "out.h5").split("\nmodes in words")[1]
+        self.assertNotRegex(screen.split("files")[0] + shown, r"\d s\b")
 
 
 class Configured(FieldTest):

@@ -67,7 +67,7 @@ class Fields(ProgramTest):
 
     def refused(self, file, module, *names, status=1):
         """That a refusal names these objects, and that its lines of Python run, if the module is there."""
-        message = self.modebank("init", file, "-o", "log.ini", "--yes", status=status).stderr
+        message = self.modebank("init", file, "-o", "x.ini", status=status).stderr
         for name in names:
             self.assertIn(name, message)
         if subprocess.run([sys.executable, "-c", f"import {module}"], capture_output=True, check=False).returncode != 0:

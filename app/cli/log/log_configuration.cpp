@@ -20,26 +20,25 @@ void LogConfiguration::set(const std::string& key, const std::string& value, con
     return;
   }
   std::erase_if(keys_,
-                [&](const Key& earlier) { return earlier.is(key) && (!value.empty() || earlier.value.empty()); });
-  const std::size_t dot = key.find('.');
-  keys_.push_back({key.substr(0, dot), key.substr(dot + 1), value, why});
+                [&](const Key& earlier) { return earlier.key == key && (!value.empty() || earlier.value.empty()); });
+  keys_.push_back({key, value, why});
 }
 
 void LogConfiguration::explain(const std::string& key, const std::string& why) {
   for (ProposedKey& stated : proposal_.keys)
     if (data_section + stated.key == key) stated.why = why;
   for (Key& stated : keys_)
-    if (stated.is(key)) stated.why = why;
+    if (stated.key == key) stated.why = why;
 }
 
 std::string LogConfiguration::text() const {
   std::vector<std::pair<std::string, std::string>> sections;  // with their lines, in the order of their first keys
-  for (const Key& key : keys_) {
-    auto section =
-        std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.first == key.section; });
-    if (section == sections.end()) section = sections.insert(section, {key.section, ""});
-    if (!key.why.empty()) section->second += "# " + key.why + "\n";
-    if (!key.value.empty()) section->second += key.name + " = " + key.value + "\n";
+  for (const auto& [key, value, why] : keys_) {
+    const std::string name = key.substr(0, key.find('.'));
+    auto section = std::find_if(sections.begin(), sections.end(), [&](const auto& s) { return s.first == name; });
+    if (section == sections.end()) section = sections.insert(section, {name, ""});
+    if (!why.empty()) section->second += "# " + why + "\n";
+    if (!value.empty()) section->second += key.substr(name.size() + 1) + " = " + value + "\n";
   }
   std::string text = configuration_text(proposal_, command_);
   for (const auto& [name, lines] : sections) text += "\n[" + name + "]\n" + lines;

@@ -30,8 +30,7 @@ class LogConfiguration {
  private:
   /// A key of another section than [data]; without a value a comment.
   struct Key {
-    std::string section, name, value, why;
-    bool is(const std::string& key) const { return section + "." + name == key; }
+    std::string key, value, why;
   };
 
   Proposal proposal_;

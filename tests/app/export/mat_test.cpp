@@ -2,7 +2,6 @@
 #include <gmock/gmock.h>
 #include <matio.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <memory>
 

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <set>
 
 #include "app/config/config_file.hpp"
 #include "app/config/option_text.hpp"

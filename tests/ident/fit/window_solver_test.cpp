@@ -1,8 +1,6 @@
 // The number of windows that each solver solves, and the audit.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-
 #include "ident/fit/audit.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"

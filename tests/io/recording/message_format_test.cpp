@@ -1,4 +1,3 @@
-
 #include "io/recording/message_columns.hpp"
 #include "io/recording/message_reader.hpp"
 #include "io/recording/topic_decoder.hpp"
