@@ -4,7 +4,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks guards uncertainty recovery evidence gyro-lost rule systems quantised scale cost features track-day export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks guards uncertainty recovery evidence gyro-lost rule systems plants quantised scale cost features export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
 
 all: build
 
@@ -120,6 +120,10 @@ rule: bench-programs
 systems: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
 
+# How often the linear stage is right about 400 simulated plants.
+plants: build
+	/usr/bin/python3 tests/bench/plants.py build/modebank --seed $(or $(SEED),1)
+
 # Time and memory of five million rows and of ten thousand runs, for docs/results/scale.md; ten minutes of two
 # processors and 10 GB of disk.
 scale: build
@@ -132,10 +136,6 @@ cost: build
 # Which features of windows with many lags find the modes, for docs/results/mixture.md; ten minutes of a processor.
 features: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
-
-# A robot's day through `modebank track`, killed every ten minutes of the log, for docs/results/track.md.
-track-day: demo
-	/usr/bin/python3 tests/bench/track_day.py build/modebank $(DEMO)/demo.h5
 
 # Bias and stated uncertainty for rounded outputs, taken as intervals and as exact values.
 quantised: build

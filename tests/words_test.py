@@ -50,7 +50,7 @@ class Words(unittest.TestCase):
     def test_finds_each_kind_of_pattern(self):
         self.write({
             "new.cpp": "// The archive knows its hash.\n/// What it returns.\nint a = 1;  // that is no number\nint open_door();\n"
-                       "throw Error(\"the steady filter\");\n",
+                       "throw Error(\"the badness of the filter\");\n",
             "new.md": "# Filters\n- Of the runs, two.\n\nA twin of a mode.\n",
             "new.py": "# Who reads this\n",
         })

@@ -119,6 +119,7 @@ std::optional<Finding> find_modes(const Archive& archive) {
                                   bent.state_names, bent.input_names);
   }
   finding.terms_asked = archive.terms_asked || archive.nonlinear;
+  finding.stretches = are_stretches(*archive.recording);
   finding.text = finding_text(finding);
   return finding;
 }

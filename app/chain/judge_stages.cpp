@@ -102,9 +102,8 @@ void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores
       keep_for_judges(scored.runs[i], said.runs[i]);
     }
   }
-  append(summarize_role(scored.name, role, scored.runs, said.runs, scores), result.summary);
-  append(diagnose_role(scored.name, role, scored.bank, scored.filter, scored.runs, said.runs, scores),
-         result.diagnostics);
+  append(summarize(scored.name, role, scored.runs, said.runs, scores), result.summary);
+  append(diagnose(scored.name, role, scored.bank, scored.filter, scored.runs, said.runs, scores), result.diagnostics);
 }
 
 template <class Evaluate>

@@ -46,7 +46,7 @@ void Adviser::done(Stage stage, const Archive& archive) const {
   if (stage == Stage::windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    warn_of_windows(*archive.windows, counts);
+    warn_of_windows(counts);
   }
   // A refined bank keeps nothing of the mixture, so warnings about the mixture do not apply.
   if (stage == Stage::bank && archive.mixture && !archive.unrefined)
@@ -57,8 +57,8 @@ void Adviser::done(Stage stage, const Archive& archive) const {
     if (const std::string text = unscored_warning(archive); !text.empty()) warning("scores: " + text);
 }
 
-void Adviser::warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const {
-  for (const Warning& found : window_warnings(windows, counts)) warning("windows: " + found.text);
+void Adviser::warn_of_windows(const WindowCounts& counts) const {
+  for (const Warning& found : window_warnings(counts)) warning("windows: " + found.text);
 }
 
 void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,

@@ -14,7 +14,7 @@ namespace modebank::app {
 class Adviser : public Listener {
  public:
   void done(Stage stage, const Archive& archive) const override;
-  void warn_of_windows(const WindowFits& windows, const WindowCounts& counts) const;
+  void warn_of_windows(const WindowCounts& counts) const;
 };
 
 /// Checks a configuration before any file is read. `file` is the path of the configuration, or empty without one.

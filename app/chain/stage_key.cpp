@@ -38,6 +38,7 @@ class KeyText {
   template <class E>
   requires std::is_enum_v<E>
   void put(E value) { put(static_cast<std::int64_t>(value)); }
+  void put(const InputDelays& value) { put(value.listed()); }
   template <class T>
   void put(const std::optional<T>& value) {
     put(value.has_value());
@@ -63,7 +64,7 @@ MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, deri
                     weight, label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, lag_range_s,
                     quantum, quantum_auto, format, missing, disorder, split, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, length, step, loss,
-                    loss_scale, scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
+                    loss_scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,
                     noise_component)
 MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, em)
@@ -71,8 +72,8 @@ MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, e
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
                     measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, drift,
                     transitions)
-MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, modes,
-                    refine, em)
+MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, refine,
+                    em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant, noise)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run, seed)
@@ -81,10 +82,13 @@ MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
 MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, window, mixture, seed)
+MODEBANK_KEY_FIELDS(ArmaxOrder, differences, state_lags, input_lags, noise_lags, intercept)
+MODEBANK_KEY_FIELDS(ArmaxStructure, order, delays)
+MODEBANK_KEY_FIELDS(SingleModel, structure, measurement_variance)
 MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting,
-                    noise_by_input, all)
+                    noise_by_input, single, all)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter, horizon, lags)
-MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, terms_stated)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, single, terms_stated)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)

@@ -18,10 +18,9 @@ struct CommandLine {
   // Values of the options. The table of commands explains each of them.
   bool help = false, version = false, quiet = false, verbose = false;
   bool json = false, dry_run = false, force = false;
-  bool schema = false, markdown = false, repair = false, findings = false, yes = false;
+  bool schema = false, markdown = false, repair = false, yes = false;
   std::string output, run, table, to;
   std::string form = "increment";
-  std::string effort = "normal";
   double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0 if the option is not given
 };
 

@@ -134,7 +134,7 @@ std::string worth_text(const FirstScreen& screen) {
 
 bool is_comparable(const Archive& archive, const Config& simulation) {
   const SimulateConfig& system = simulation.simulate;
-  if (system.kind != SimulatedSystem::linear || system.ground_names.empty()) return false;
+  if (system.ground_names.empty()) return false;
   if (!archive.bank || !archive.labels || !archive.recording || archive.confusion.empty()) return false;
   return names_of(archive.recording->states) == simulation.data.state &&
          names_of(archive.recording->inputs) == simulation.data.input && simulation.data.state.size() == 1;

@@ -1,7 +1,6 @@
 #include "app/cli/new_data.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -44,9 +43,6 @@ AveragedColumns take_sampling(const CommandLine& line, const OpenArchive& archiv
   if (!lag || lag->correction == LagCorrection::none) return averaged;
   averaged.further_lag_s = 0.5 * period_s;
   data.lag_s = lag->lag.mean - averaged.further_lag_s;
-  if (lag->correction == LagCorrection::drift)
-    spdlog::warn("{}: its lag drifts; for new data the constant lag {:.3g} s is taken", archive.path().string(),
-                 lag->lag.mean);
   return averaged;
 }
 

@@ -22,30 +22,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The files of a demo, all in one folder. Their configurations are built into the program.
+/// The files of the demo, all in one folder. Their configurations are built into the program.
 struct DemoFolder {
   fs::path folder;
-  std::string name, simulation_name;
-  std::string_view configuration_text, simulation_text;
 
-  fs::path simulation() const { return folder / (simulation_name + ".ini"); }
-  fs::path configuration() const { return folder / (name + ".ini"); }
+  fs::path simulation() const { return folder / "simulate_demo.ini"; }
+  fs::path configuration() const { return folder / "demo.ini"; }
   fs::path data() const { return folder / "data"; }
-  fs::path archive() const { return folder / (name + ".h5"); }
+  fs::path archive() const { return folder / "demo.h5"; }
 };
-
-/// The demo of two linear grounds, or with the word `tyres` the demo of a tyre model with nonlinear grounds.
-DemoFolder demo_of(const CommandLine& line) {
-  const bool tyres = !line.files.empty();
-  if (tyres && line.files.front() != "tyres")
-    throw ConfigurationError(
-        fmt::format("unknown demo {}: type `modebank demo`, or `modebank demo tyres` for tyres that slide on ice",
-                    line.files.front()));
-  const std::string folder = tyres ? "modebank_tyres" : "modebank_demo";
-  const fs::path chosen = line.output.empty() ? folder : line.output;
-  if (tyres) return {chosen, "tyres", "simulate_ice", assets::tyres_ini(), assets::simulate_ice_ini()};
-  return {chosen, "demo", "simulate_demo", assets::demo_ini(), assets::simulate_demo_ini()};
-}
 
 bool holds(const fs::path& file, std::string_view content) {
   return fs::is_regular_file(file) && read_file(file) == content;
@@ -58,23 +43,23 @@ bool holds_runs_alone(const fs::path& folder) {
          });
 }
 
-bool is_of_a_demo(const fs::path& path, const DemoFolder& demo) {
-  if (path == demo.simulation()) return holds(path, demo.simulation_text);
-  if (path == demo.configuration()) return holds(path, demo.configuration_text);
+bool is_of_the_demo(const fs::path& path, const DemoFolder& demo) {
+  if (path == demo.simulation()) return holds(path, assets::simulate_demo_ini());
+  if (path == demo.configuration()) return holds(path, assets::demo_ini());
   if (path == demo.data()) return holds_runs_alone(path);
   return path == demo.archive() && fs::is_regular_file(path);
 }
 
-/// A demo may run again in the folder of an earlier demo, which contains the demo's configuration. It does not replace
+/// The demo may run again in the folder of an earlier demo, which contains its configurations. It does not replace
 /// other files.
 void refuse_foreign_files(const DemoFolder& demo) {
   if (!fs::exists(demo.folder)) return;
   if (!fs::is_directory(demo.folder))
     throw ConfigurationError(fmt::format("-o {}: not a folder", demo.folder.string()));
   for (const fs::directory_entry& entry : fs::directory_iterator(demo.folder))
-    if (!fs::exists(demo.simulation()) || !is_of_a_demo(entry.path(), demo))
+    if (!fs::exists(demo.simulation()) || !is_of_the_demo(entry.path(), demo))
       throw ConfigurationError(fmt::format(
-          "{} is not a file of a demo, or was changed since: name another folder (-o FOLDER), or --force to write "
+          "{} is not a file of the demo, or was changed since: name another folder (-o FOLDER), or --force to write "
           "{}, {}, {} and {} in this one",
           entry.path().string(), demo.simulation().filename().string(), demo.configuration().filename().string(),
           demo.data().filename().string(), demo.archive().filename().string()));
@@ -119,8 +104,8 @@ void write_configurations(const CommandLine& line, const DemoFolder& demo) {
   make_folder(demo.folder);
   for (const fs::path& file : {demo.simulation(), demo.configuration()})
     check_configuration_output("-o", file, {}, true);
-  replace_file(demo.simulation(), {demo.simulation_text});
-  replace_file(demo.configuration(), {demo.configuration_text});
+  replace_file(demo.simulation(), {assets::simulate_demo_ini()});
+  replace_file(demo.configuration(), {assets::demo_ini()});
 }
 
 /// If the archive and the true system can be compared, prints this comparison in place of the first screen.
@@ -135,9 +120,8 @@ void add_truth(const DemoFolder& demo, const CommandLine& simulate, Result& resu
 }
 
 std::string closing_words(const DemoFolder& demo, const std::string& program) {
-  const std::string pages = fmt::format("All results: {0} show {1}\nAs a page: {0} report {1} -o {2}.html\n", program,
-                                        shell_quoted(demo.archive().string()), demo.name);
-  return demo.name == "tyres" ? pages : pages + fmt::format("Tyres that slide on ice: {} demo tyres\n", program);
+  return fmt::format("All results: {0} show {1}\nAs a page: {0} report {1} -o demo.html\n", program,
+                     shell_quoted(demo.archive().string()));
 }
 
 constexpr std::string_view introduction =
@@ -147,22 +131,21 @@ constexpr std::string_view introduction =
 }  // namespace
 
 int run_demo(const CommandLine& line) {
-  const DemoFolder demo = demo_of(line);
-  const bool first = demo.name == "demo";
+  const DemoFolder demo{line.output.empty() ? "modebank_demo" : line.output};
   const CommandLine simulate = typed_command(
       line, {"simulate", demo.simulation().string(), fmt::format("--simulate.output={}", demo.data().string())});
   CommandLine run = typed_command(
       line, {"run", demo.configuration().string(), fmt::format("--archive.output={}", demo.archive().string())});
   run.force = true;  // --force is safe: the archive in the demo's folder was made by a demo
-  run.quiet = run.quiet || (first && !line.verbose);
+  run.quiet = run.quiet || !line.verbose;
   write_configurations(line, demo);
   if (run.quiet && !line.quiet) set_up_log(Verbosity::warnings);
-  if (first) print_text(line, introduction);
+  print_text(line, introduction);
   print_text(line, simulate.typed + "\n");
   print_text(line, do_simulate(simulate).text);
   print_text(line, run.typed + "\n");
   Result result = do_pipeline(run);
-  if (first) add_truth(demo, simulate, result);
+  add_truth(demo, simulate, result);
   result.text += closing_words(demo, line.program);
   return print_result(line, result);
 }

@@ -152,7 +152,7 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   const WindowFits common = identify_into_file(final_target(config.archive.output), data, inputs,
                                                [&](const WindowFits& fits) { counts.add(fits); });
   log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
-  log.warn_of_windows(common, counts);
+  log.warn_of_windows(counts);
   const std::vector<std::string> labels =
       parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs));
   return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
@@ -211,9 +211,6 @@ Result do_configured(const CommandLine& line, const Config& config, const std::f
 
 Result do_pipeline(const CommandLine& line) {
   if (line.command == "run" && names_logs(line.files)) return do_run_log(line);
-  if (std::find(line.given.begin(), line.given.end(), "effort") != line.given.end())
-    throw ConfigurationError(
-        "--effort works with logs only (modebank run LOG); a configuration already has all decisions");
   if (line.files.size() != 1)
     throw ConfigurationError(
         fmt::format("{} needs one configuration file, or logs: modebank {} CONFIG", line.command, line.command));

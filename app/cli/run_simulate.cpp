@@ -27,44 +27,19 @@ SimulationOptions system_of(const Config& config) {
   return system;
 }
 
-VehicleSimulationOptions vehicle_of(const Config& config) {
-  const DataOptions& data = config.data;
-  if (data.state.empty() || data.state.size() > 3 || data.input.size() != 2)
-    throw ConfigurationError(
-        "a vehicle needs data.state, the columns of yaw rate and, if they are to be measured, forward "
-        "and sideways speed, and data.input, those of left and right wheel speed");
-  VehicleSimulationOptions vehicle = config.simulate.vehicle;
-  const SimulationOptions& shared = config.simulate.system;
-  vehicle.commands = static_cast<const CommandOptions&>(shared);
-  vehicle.runs = shared.runs;
-  vehicle.outlier_fraction = shared.outlier_fraction;
-  vehicle.outlier_sd = shared.outlier_sd;
-  vehicle.measured = static_cast<Index>(data.state.size());
-  vehicle.dt_s = 1.0 / config.simulate.rate_hz;
-  vehicle.state_rate_hz = config.simulate.state_rate_hz;
-  return vehicle;
-}
-
-/// One name per kind of ground, or an empty list.
+/// One name per mode, or an empty list.
 const std::vector<std::string>& grounds_of(const SimulateConfig& options) {
-  const bool vehicle = options.kind == SimulatedSystem::vehicle;
-  const std::size_t kinds = vehicle ? options.vehicle.friction.size() : options.system.modes.size();
-  if (!options.ground_names.empty() && options.ground_names.size() != kinds)
-    throw ConfigurationError(fmt::format("system.ground_names has {} names for {} kinds of ground ({})",
-                                         options.ground_names.size(), kinds,
-                                         vehicle ? "system.friction" : "system.modes"));
+  if (!options.ground_names.empty() && options.ground_names.size() != options.system.modes.size())
+    throw ConfigurationError(fmt::format("system.ground_names has {} names for {} modes (system.modes)",
+                                         options.ground_names.size(), options.system.modes.size()));
   return options.ground_names;
 }
 
 void simulate_system(const Config& config) {
   const DataOptions& data = config.data;
   const SimulateConfig& options = config.simulate;
-  if (options.kind == SimulatedSystem::vehicle)
-    write_simulation(simulate_vehicle(vehicle_of(config), config.job.seed),
-                     {options.output, data.state, data.input, grounds_of(options)});
-  else
-    write_simulation(simulate(system_of(config), config.job.seed),
-                     {options.output, data.state, data.input, options.state_rate_hz, grounds_of(options)});
+  write_simulation(simulate(system_of(config), config.job.seed),
+                   {options.output, data.state, data.input, options.state_rate_hz, grounds_of(options)});
 }
 
 }  // namespace

@@ -26,12 +26,11 @@ struct SystemText {
 SystemText system_text(const std::string& system, const std::filesystem::path& folder) {
   const std::filesystem::path file = folder / system;
   if (std::filesystem::is_regular_file(file)) return {read_file(file), file.string()};
-  if (system == "husky_ice") return {std::string(assets::husky_ice_system()), system};
   if (system == "three_grips") return {std::string(assets::three_grips_system()), system};
   if (system == "two_grounds") return {std::string(assets::two_grounds_system()), system};
-  throw ConfigurationError(fmt::format(
-      "simulate.system = {}: expected husky_ice, three_grips, two_grounds or a file, and there is none at {}", system,
-      file.string()));
+  throw ConfigurationError(
+      fmt::format("simulate.system = {}: expected three_grips, two_grounds or a file, and there is none at {}", system,
+                  file.string()));
 }
 
 const Option& parameter(const std::string& where, const std::string& key) {
@@ -39,21 +38,6 @@ const Option& parameter(const std::string& where, const std::string& key) {
   std::vector<std::string> keys;
   for (const Option& option : system_parameters()) keys.push_back(option.key);
   throw ConfigurationError(fmt::format("{}: unknown key {}{}", where, key, did_you_mean(key, keys)));
-}
-
-/// Throws for a parameter or key of another kind of system, because it would have no effect. `where`: file and line of
-/// each key.
-void refuse_other_kinds(const Config& config, const std::map<std::string, std::string>& where) {
-  const Config defaults{};
-  for (const std::vector<Option>* table : {&system_parameters(), &option_table()})
-    for (const Option& option : *table) {
-      if (!option.only_for || *option.only_for == config.simulate.kind) continue;
-      const auto line = where.find(option.key);
-      if (line != where.end() || option.get(config) != option.get(defaults))
-        throw ConfigurationError(fmt::format(
-            "{}{} belongs to system.kind = {}, but {} is {}", line == where.end() ? "" : line->second + ": ",
-            option.key, name_of(*option.only_for), config.simulate.name, name_of(config.simulate.kind)));
-    }
 }
 
 }  // namespace
@@ -71,9 +55,6 @@ void read_system(const std::filesystem::path& folder, Config& config) {
       set_option(config, option, where, entry.value, entry.has_comment);
     });
   faults.refuse();
-  if (!seen.contains("system.kind"))
-    throw ConfigurationError(system.name + ": system.kind is not set: linear or vehicle");
-  refuse_other_kinds(config, seen);
 }
 
 }  // namespace modebank::app

@@ -9,7 +9,6 @@
 #include "app/config/chain_options.hpp"
 #include "app/config/study_config.hpp"
 #include "ident/simulate/simulate.hpp"
-#include "ident/simulate/simulate_vehicle.hpp"
 
 namespace modebank::app {
 
@@ -47,15 +46,10 @@ struct JobConfig {
   }
 };
 
-enum class SimulatedSystem { linear, vehicle };
-
 struct SimulateConfig {
-  std::string name =
-      "husky_ice";  ///< name of a built-in system, or a system file; it sets all members from here to ground_names
-  SimulatedSystem kind = SimulatedSystem::linear;
-  SimulationOptions system;               ///< the linear system; a vehicle also uses these commands, runs and outliers
-  VehicleSimulationOptions vehicle;       ///< parameters that only a vehicle has
-  std::vector<std::string> ground_names;  ///< names of the kinds of ground, or of the linear system's modes
+  std::string name = "two_grounds";  ///< name of a built-in system, or a system file; it sets the two members below
+  SimulationOptions system;          ///< its runs and samples are keys of [simulate]
+  std::vector<std::string> ground_names;  ///< names of the modes
   std::string output = "simulated";
   double rate_hz = 6.5;
   double state_rate_hz = 65.0;
@@ -76,6 +70,7 @@ struct StructureConfig {
   LagChoice state = LagChoice::by_model, input = LagChoice::by_model, delay = LagChoice::by_model;
   LagChoice length = LagChoice::by_model, step = LagChoice::by_model;  ///< how the length and the step of windows are
                                                                        ///< set
+  bool automatic_intercept = true;                                     ///< window.intercept = auto
 };
 
 /// Options of every stage from one configuration file. The option table lists their keys.
@@ -121,9 +116,4 @@ void validate(const Config& config);
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
   static constexpr Names<7> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined", "nonlinear"};
-};
-
-template <>
-struct modebank::EnumNames<modebank::app::SimulatedSystem> {
-  static constexpr Names<2> values{"linear", "vehicle"};
 };

@@ -65,6 +65,8 @@ bool in_range(const Range& range, const std::vector<T>& values) {
   return std::all_of(values.begin(), values.end(), [&range](const T& value) { return in_range(range, value); });
 }
 
+inline bool in_range(const Range& range, const InputDelays& value) { return in_range(range, value.listed()); }
+
 /// Functions that set and get a member of a Config. They are plain functions, so that their code is compiled once per
 /// type and not once per key.
 template <class T>

@@ -14,7 +14,7 @@ DataOptions data_options_of(const Config& c) {
   const SearchedLags searched = searched_lags_of(c);
   const Index states = searched.state ? usual_lags : c.window.state_lags;
   const Index inputs = searched.input ? usual_lags : c.window.input_lags;
-  data.split.gap_samples = c.window.length + std::max(states, inputs + c.window.input_delay);
+  data.split.gap_samples = c.window.length + std::max(states, inputs + c.window.input_delay.latest());
   return data;
 }
 
@@ -32,7 +32,8 @@ SearchedLags searched_lags_of(const Config& c) {
 
 AutomaticWindows automatic_windows_of(const Config& c) {
   const bool by_model = c.structure.automatic_model;
-  return {is_automatic(c.structure.length, by_model), is_automatic(c.structure.step, by_model)};
+  return {is_automatic(c.structure.length, by_model), is_automatic(c.structure.step, by_model),
+          c.structure.automatic_intercept};
 }
 
 ChainOptions chain_options(const Config& c) {

@@ -24,8 +24,6 @@ struct Option {
   std::function<void(Config&, const std::string&)> set;  ///< throws std::invalid_argument if the text is outside the
                                                          ///< range
   std::function<std::string(const Config&)> get;         ///< text from which `set` would set the same value
-  std::optional<SimulatedSystem> only_for = {};          ///< kind of simulated system that has this key; empty if all
-                                                         ///< kinds have it
   std::optional<Stage> stage = {};                       ///< earliest stage whose numbers the key changes; empty if the
                                                          ///< key changes none
   bool basic = false;       ///< one of the few keys that most users set; help lists these first

@@ -111,6 +111,12 @@ void parse_value(const std::string& text, std::vector<Eigen::Index>& value) {
   if (value.empty()) throw std::invalid_argument("is empty");
 }
 
+void parse_value(const std::string& text, InputDelays& value) {
+  std::vector<Eigen::Index> listed;
+  parse_value(text, listed);
+  value = InputDelays(listed);
+}
+
 void parse_value(const std::string& text, Eigen::VectorXd& value) { value = to_vector(parse_list<double>(text)); }
 
 void parse_value(const std::string& text, std::vector<Eigen::VectorXd>& value) {
@@ -144,6 +150,7 @@ std::string format_value(const std::vector<Eigen::Index>& value) {
   return range ? fmt::format("{}..{}", value.front(), value.back()) : fmt::format("{}", fmt::join(value, ", "));
 }
 
+std::string format_value(const InputDelays& value) { return fmt::format("{}", fmt::join(value.listed(), ", ")); }
 std::string format_value(const Eigen::VectorXd& value) {
   return format_value(std::vector<double>(value.begin(), value.end()));
 }

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "modebank/base/names.hpp"
+#include "modebank/ident/input_delays.hpp"
 
 namespace modebank::app {
 
@@ -22,6 +23,7 @@ void parse_value(const std::string& text, std::optional<double>& value);
 void parse_value(const std::string& text, std::vector<std::string>& value);      ///< a, b
 void parse_value(const std::string& text, std::vector<double>& value);           ///< 1, 2
 void parse_value(const std::string& text, std::vector<Eigen::Index>& value);     ///< "3", "1..12" or "2, 4, 8"
+void parse_value(const std::string& text, InputDelays& value);                   ///< 1, 2
 void parse_value(const std::string& text, Eigen::VectorXd& value);               ///< 1, 2
 void parse_value(const std::string& text, std::vector<Eigen::VectorXd>& value);  ///< "1, 2 | 3, 4"
 void parse_value(const std::string& text, Eigen::MatrixXd& value);               ///< rows of the matrix: "1, 2 | 3, 4"
@@ -36,6 +38,7 @@ std::string format_value(const std::optional<double>& value);
 std::string format_value(const std::vector<std::string>& value);
 std::string format_value(const std::vector<double>& value);
 std::string format_value(const std::vector<Eigen::Index>& value);
+std::string format_value(const InputDelays& value);
 std::string format_value(const Eigen::VectorXd& value);
 std::string format_value(const std::vector<Eigen::VectorXd>& value);
 std::string format_value(const Eigen::MatrixXd& value);

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 
@@ -70,7 +71,7 @@ INPUT_LAG_S = {:.17g}  # inputs act this much later [s]: at time t, u is what wa
 )py",
                      comment_text(exported.verdict_text()), comment_text(exported.provenance.modebank_version),
                      comment_text(exported.archive), exported.sha256, exported.filter, exported_equation,
-                     transition_meaning, s.state_lags, s.input_lags, s.input_delay, remarks,
+                     transition_meaning, s.state_lags, s.input_lags, fmt::join(s.input_delay.listed(), ", "), remarks,
                      quoted_scalar(exported.verdict_text()), python_texts(exported.remarks()), exported.bank.dt_s,
                      exported.input_lag_s);
 }

@@ -118,7 +118,8 @@ std::string to_json(const ExportedBank& exported) {
   page["dt_s"] = bank.dt_s;
   page["model"] = bank.model;
   page["input_lag_s"] = exported.input_lag_s;
-  page["lags"] = {{"state_lags", s.state_lags}, {"input_lags", s.input_lags}, {"input_delay", s.input_delay}};
+  page["lags"] = {
+      {"state_lags", s.state_lags}, {"input_lags", s.input_lags}, {"input_delay", s.input_delay.by_input(s.inputs)}};
   page["states"] = channels_json(exported.states);
   page["inputs"] = channels_json(exported.inputs);
   page["measurements"] = channels_json(exported.measurements);

@@ -48,7 +48,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
   if (!proposal.left.empty()) text += "\n" + left_text(proposal.left);
   text +=
       "\n# All other keys have their defaults. `modebank help KEY` explains a key. `modebank check` on this file tests "
-      "the data\n# and suggests settings.\n";
+      "the data.\n";
   return text;
 }
 

@@ -82,6 +82,7 @@ void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, con
   ErrorAhead error;
   error.steps = steps;
   error.bank = rmse_of("bank");
+  error.coverage_95 = row_of("bank")->coverage_95;
   error.other = best_of_competitors([&](const char* name) { return row_of(name) ? &row_of(name)->rmse : nullptr; },
                                     std::less<>());
   error.competitor = competitor.empty() ? Eigen::VectorXd() : rmse_of(competitor);

@@ -18,6 +18,7 @@ struct ErrorAhead {
   Eigen::VectorXd competitor, combined;  ///< n_y, root mean square [state unit]; empty if unknown
   Eigen::VectorXd other;                 ///< n_y, the smallest error of all competitors for each state; empty if
                                          ///< unknown
+  double coverage_95 = not_a_number;     ///< share of the samples inside the bank's 95 % band; NaN if unknown
   Eigen::VectorXd fit_percent;           ///< n_y, FIT of the bank [%]; empty if unknown
   std::string bank_words,
       other_words;  ///< texts: the bank's errors with units; the errors of the competitor and of `combined`, each with

@@ -20,19 +20,10 @@ std::string counted(Eigen::Index count, const char* what) {
   return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
 }
 
-/// Text such as "6 held-out runs" or "held-out run".
+/// Text such as "6 held-out runs", or "held-out stretch" for one stretch of a drive.
 std::string judged(const Finding& finding) {
-  const std::string runs = fmt::format("{} run{}", words_for(finding.role), finding.runs == 1 ? "" : "s");
+  const std::string runs = fmt::format("{} {}", words_for(finding.role), noun_of_runs(finding.runs, finding.stretches));
   return finding.runs == 1 ? runs : fmt::format("{} {}", finding.runs, runs);
-}
-
-/// Text such as "; error from 12 blocks of the one run", if there are too few runs for a standard error over runs.
-std::string blocks_words(const Finding& finding) {
-  for (const PairedGain& gain : finding.gains)
-    if (gain.competitor == finding.best_competitor && gain.by_blocks && std::isfinite(gain.standard_error))
-      return fmt::format("; error from {:.0f} blocks of the {}", gain.degrees_of_freedom + 1.0,
-                         finding.runs == 1 ? "one run" : fmt::format("{} runs", finding.runs));
-  return "";
 }
 
 /// Text such as "`drifting`: one linear model whose parameters wander".
@@ -49,6 +40,13 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   const auto found = std::find_if(finding.gains.begin(), finding.gains.end(),
                                   [&](const PairedGain& gain) { return gain.competitor == competitor; });
   return found == finding.gains.end() ? nullptr : &*found;
+}
+
+/// Text such as "; error from 12 stretches", if there are too few runs for a standard error over runs.
+std::string stretches_words(const Finding& finding) {
+  const PairedGain* const gain = gain_over(finding, finding.best_competitor);
+  if (!gain || !gain->by_blocks || !std::isfinite(gain->standard_error)) return "";
+  return fmt::format("; error from {:.0f} stretches", gain->degrees_of_freedom + 1.0);
 }
 
 bool falls_short_of(const Finding& finding, const std::string& competitor) {
@@ -76,7 +74,7 @@ std::string gain_sentence(const Finding& finding, const char* start) {
   return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}{}{}).",
                      start, counted(finding.modes, "linear model"), judged(finding), than,
                      described(finding, finding.best_competitor), likelihood_words(finding.gain),
-                     gain_words(finding.gain, finding.standard_error), passing_gain(finding), blocks_words(finding));
+                     gain_words(finding.gain, finding.standard_error), passing_gain(finding), stretches_words(finding));
 }
 
 /// Text on a single model that describes the runs as well as the bank, or better.
@@ -102,9 +100,9 @@ std::string gain_words(const PairedGain& gain) {
 
 /// Text such as "the gain over `one_motion`, +0.849 +- 0.388 nats per sample, may be chance: with 5 runs, only a gain
 /// above 0.911 passes".
-std::string within_chance_words(const PairedGain& gain, Eigen::Index runs) {
-  const std::string clusters =
-      gain.by_blocks ? counted(static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1, "block") : counted(runs, "run");
+std::string within_chance_words(const PairedGain& gain, const Finding& finding) {
+  const auto count = gain.by_blocks ? static_cast<Eigen::Index>(gain.degrees_of_freedom) + 1 : finding.runs;
+  const std::string clusters = fmt::format("{} {}", count, noun_of_runs(count, gain.by_blocks || finding.stretches));
   if (!gain.exceeds())
     return fmt::format("{} may be chance: with {}, only a gain above {:.3f} passes", gain_words(gain), clusters,
                        gain.margin);
@@ -137,7 +135,7 @@ std::string why_not_told(const Finding& finding) {
     case Doubt::within_chance:
       break;
   }
-  return within_chance_words(*least_beaten(finding), finding.runs);
+  return within_chance_words(*least_beaten(finding), finding);
 }
 
 /// Text such as "78 % of the samples of y repeat the one before; ..."

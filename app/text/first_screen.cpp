@@ -121,7 +121,7 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
     return section(label, as_typed(text, archive, program, file), most, columns);
   };
   const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
-                             part("structure", screen.structure, 2) + part("finding", screen.finding, finding_lines);
+                             part("structure", screen.structure, 4) + part("finding", screen.finding, finding_lines);
   const std::string after = part("band", screen.band, 3) +
                             part("mean", screen.mean, screen.free_run_start == 0 ? 3 : 4) +
                             part("warning", screen.warning, screen_lines) + part("next", screen.next, 3) +

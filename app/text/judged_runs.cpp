@@ -1,5 +1,7 @@
 #include "app/text/judged_runs.hpp"
 
+#include <set>
+
 namespace modebank {
 
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role) {
@@ -28,5 +30,15 @@ std::vector<std::size_t> positions_of(const Recording& recording, Role role) {
 }
 
 const char* words_for(Role role) { return role == Role::test ? "held-out" : "training"; }
+
+bool are_stretches(const Recording& recording) {
+  std::set<std::string> drives;
+  for (const Trajectory& run : recording.runs) drives.insert(run.file + run.run.substr(0, run.run.rfind('.')));
+  return drives.size() < recording.runs.size();
+}
+
+const char* noun_of_runs(Eigen::Index count, bool stretches) {
+  return count == 1 ? (stretches ? "stretch" : "run") : stretches ? "stretches" : "runs";
+}
 
 }  // namespace modebank

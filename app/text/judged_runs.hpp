@@ -25,4 +25,10 @@ std::vector<std::size_t> positions_of(const Recording& recording, Role role);
 /// "held-out" or "training".
 const char* words_for(Role role);
 
+/// Whether several runs are stretches of one drive: parts of one file whose names differ only after the last dot.
+bool are_stretches(const Recording& recording);
+
+/// "run", "runs", "stretch" or "stretches".
+const char* noun_of_runs(Eigen::Index count, bool stretches);
+
 }  // namespace modebank

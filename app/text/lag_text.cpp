@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "app/text/text_units.hpp"
 #include "ident/base/natural_order.hpp"
 
 namespace modebank::app {
@@ -13,31 +12,10 @@ namespace {
 
 constexpr std::size_t most_runs = 12;
 
-std::string_view action(LagCorrection correction) {
-  switch (correction) {
-    case LagCorrection::none:
-      return "nothing: no correction gains more than its standard error in cross-validation";
-    case LagCorrection::pooled:
-      return "the pooled lag to every run";
-    case LagCorrection::per_run:
-      return "to training runs their own lag, to test runs the pooled one";
-    case LagCorrection::drift:
-      return "to training runs their own lag and drift, to test runs the pooled ones";
-  }
-  return "";
-}
-
 std::string run_text(const RunLag& run) {
   if (run.status == LagStatus::not_estimated) return "";
-  std::string text = fmt::format("            {:<6} lag {}", run.run,
-                                 lag_estimate_text(run.lag_s, run.lag_standard_error_s, run.status));
-  if (run.drift_status == LagStatus::converged)
-    text += fmt::format(", drift {:+.2f} +- {:.2f} ms/s", per_mille * run.clock_drift,
-                        per_mille * run.clock_drift_standard_error);
-  if (run.match_windows > 0)
-    text += fmt::format(", best match {:+.2f} [{:+.2f}, {:+.2f}] s in {} windows", run.match_s, run.match_least_s,
-                        run.match_largest_s, run.match_windows);
-  return text + fmt::format("; shifted by {:+.3f} s\n", run.applied_lag_s);
+  return fmt::format("            {:<6} lag {}\n", run.run,
+                     lag_estimate_text(run.lag_s, run.lag_standard_error_s, run.status));
 }
 
 }  // namespace
@@ -67,11 +45,10 @@ std::string lag_text(const LagReport& report, bool done) {
         report.lag.between_sd > 0.0 ? fmt::format("{:.3f} s", report.lag.between_sd) : "no more than their errors");
   if (report.lag.count > 0 && report.lag.mean < 0.0 && report.correction != LagCorrection::none)
     text += fmt::format("; their stamps are late: when filtering live, delay the states by {:.3f} s", -report.lag.mean);
-  if (report.drift.count > 0)
-    text += fmt::format("; clock drift {:+.2f} +- {:.2f} ms/s", per_mille * report.drift.mean,
-                        per_mille * report.drift.standard_error);
   text += fmt::format("\n          {}{}\n          log score", done ? "applied: " : "data.lag_s = auto would apply ",
-                      action(report.correction));
+                      report.correction == LagCorrection::none
+                          ? "nothing: the pooled lag gains no more than its standard error in cross-validation"
+                          : "the pooled lag to every run");
   for (const LagScore& score : report.scores) {
     text += fmt::format("{} {} {:.3f}", score.correction == LagCorrection::none ? "" : ",", name_of(score.correction),
                         score.log_score);

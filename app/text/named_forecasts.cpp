@@ -40,64 +40,43 @@ void add(const std::vector<Row>& rows, Role role, Index steps, std::vector<Reach
   }
 }
 
-/// Scores of all filters on the training runs.
+/// Scores of all filters on the training runs, the simplest filter first: the competitors, the bank, the combination.
 std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   std::vector<Reached> reached;
   add(archive.left_out, Role::train, steps, reached);
-  if (!reached.empty()) return reached;
-  if (steps == 1) add(archive.summary, Role::train, steps, reached);
-  add(archive.horizons, Role::train, steps, reached);
+  const bool learned = reached.empty();
+  if (learned && steps == 1) add(archive.summary, Role::train, steps, reached);
+  if (learned) add(archive.horizons, Role::train, steps, reached);
+  const auto place = [](const Reached& one) {
+    return std::find(competitor_names.begin(), competitor_names.end(), one.filter) - competitor_names.begin() +
+           (one.filter == combined_name);
+  };
+  std::sort(reached.begin(), reached.end(), [&](const auto& a, const auto& b) { return place(a) < place(b); });
   return reached;
 }
 
 /// Excess of the filter's error over the smallest error of all filters, relative to that error. It is the largest over
 /// all states.
-double excess_error(const Reached& one, const std::vector<const Reached*>& all) {
+double excess_error(const Reached& one, const std::vector<Reached>& all) {
   Eigen::VectorXd least = one.rmse;
-  for (const Reached* other : all)
-    if (other->rmse.size() == least.size()) least = least.cwiseMin(other->rmse);
+  for (const Reached& other : all)
+    if (other.rmse.size() == least.size()) least = least.cwiseMin(other.rmse);
   double largest = 0.0;
   for (Index i = 0; i < least.size(); ++i)
     if (least(i) > 0.0) largest = std::fmax(largest, one.rmse(i) / least(i) - 1.0);
   return largest;
 }
 
-constexpr double about_equal = 0.002;
-
-bool is_single(const std::string& filter) { return filter != combined_name; }
-
-/// The highest log score among the filters for which `may` returns true; minus infinity if there are none.
+/// The simplest filter that loses less than 0.02 nats against the best, as in the finding. Null if there are none. Only
+/// filters for which `may` returns true are compared.
 template <class May>
-double highest_score(const std::vector<Reached>& all, May may) {
+const Reached* simplest_good(const std::vector<Reached>& all, May may) {
   double best = -std::numeric_limits<double>::infinity();
   for (const Reached& one : all)
     if (may(one.filter)) best = std::fmax(best, one.log_score);
-  return best;
-}
-
-/// The filter with the smallest error, or the first of nearly equal ones. Null if there are none. Only single filters
-/// for which `may` returns true are compared. Their log score must be less than 0.02 nats below the best of these
-/// filters.
-template <class May>
-const Reached* best_single(const std::vector<Reached>& all, May may) {
-  const auto counts = [&](const std::string& filter) { return is_single(filter) && may(filter); };
-  const double best = highest_score(all, counts);
-  std::vector<const Reached*> good;
   for (const Reached& one : all)
-    if (counts(one.filter) && one.log_score > best - negligible_gain) good.push_back(&one);
-  const Reached* chosen = nullptr;
-  for (const Reached* one : good)
-    if (!chosen || excess_error(*one, good) < excess_error(*chosen, good) - about_equal) chosen = one;
-  return chosen;
-}
-
-/// The combination, if its log score is better than that of every single filter; else the best single filter. The
-/// combination has an advantage because its weights adapt to the run. Null without filters.
-const Reached* best_of(const std::vector<Reached>& all) {
-  const double best = highest_score(all, is_single);
-  for (const Reached& one : all)
-    if (!is_single(one.filter) && one.log_score > best + about_equal) return &one;
-  return best_single(all, is_single);
+    if (may(one.filter) && one.log_score > best - negligible_gain) return &one;
+  return nullptr;
 }
 
 constexpr double worth_a_name = 0.02;  // smallest saved fraction of the error for which a filter is named
@@ -105,12 +84,10 @@ constexpr double worth_a_name = 0.02;  // smallest saved fraction of the error f
 /// Names the filter with the smallest error, if its error is smaller than the chosen filter's error by this fraction.
 void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
   forecast.point_filter = chosen.filter;
-  std::vector<const Reached*> every;
-  for (const Reached& one : all) every.push_back(&one);
   const Reached* least = &chosen;
-  for (const Reached* one : every)
-    if (excess_error(*one, every) < excess_error(*least, every)) least = one;
-  const double saved = 1.0 - 1.0 / (1.0 + excess_error(chosen, {&chosen, least}));
+  for (const Reached& one : all)
+    if (excess_error(one, all) < excess_error(*least, all)) least = &one;
+  const double saved = 1.0 - 1.0 / (1.0 + excess_error(chosen, {chosen, *least}));
   if (saved <= worth_a_name) return;
   forecast.point_filter = least->filter;
   forecast.point_gain = saved;
@@ -155,6 +132,22 @@ Gain gain_over(const Archive& archive, const std::string& better, const std::str
   return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
 }
 
+/// The filter to name at a horizon; null without filters. Nothing is named against the simpler model of the finding, or
+/// against its best competitor, if the judged runs show no gain that counts. One step ahead the finding itself decides
+/// between bank and model.
+const Reached* best_of(const Archive& archive, const std::vector<Reached>& all, Index steps) {
+  const Reached* good = simplest_good(all, [](const std::string&) { return true; });
+  if (!good || !archive.finding) return good;
+  const std::string& described = archive.finding->better_description;
+  const std::string& simpler = described.empty() ? archive.finding->best_competitor : described;
+  for (const Reached& one : all)
+    if (&one < good && one.filter == simpler &&
+        ((steps == 1 && good->filter == "bank" && simpler == described) ||
+         gain_over(archive, good->filter, simpler, steps).mean < negligible_gain))
+      return &one;
+  return good;
+}
+
 /// Whether the C code of `export --to c` supports the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == combined_name) return false;
@@ -169,12 +162,12 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   name_point(all, chosen, forecast);
   if (chosen.filter != "bank")
     forecast.other = "bank";
-  else if (const Reached* next = best_single(all, [](const std::string& name) { return name != "bank"; }))
+  else if (const Reached* next = simplest_good(all, [](const std::string& name) { return name != "bank"; }))
     forecast.other = next->filter;
   const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
   forecast.gain = gain.mean;
   forecast.error = gain.error;
-  const Reached* in_c = best_single(all, [&](const std::string& name) { return runs_in_c(archive, name); });
+  const Reached* in_c = simplest_good(all, [&](const std::string& name) { return runs_in_c(archive, name); });
   if (!in_c || in_c->filter == chosen.filter) return forecast;
   forecast.c_filter = in_c->filter;
   forecast.c_loss = gain_over(archive, forecast.filter, in_c->filter, steps).mean;
@@ -195,16 +188,16 @@ std::string reference_of(const NamedForecast& forecast, const Finding& finding) 
   return competitor.empty() || competitor == forecast.filter ? "bank" : competitor;
 }
 
-/// Text such as " (against `drifting` each sample is 4.2 % more likely, +0.041 +- 0.012 nats; in C `bank`, -0.041)".
+/// Text such as " (+0.041 +- 0.012 nats over `drifting`; in C `bank`, -0.041)".
 std::string worth(const Archive& archive, const NamedForecast& forecast) {
   std::vector<std::string> parts;
   const std::string other = reference_of(forecast, *archive.finding);
   const Gain gain = other == forecast.filter ? Gain{} : gain_over(archive, forecast.filter, other, forecast.steps);
   if (!std::isnan(gain.mean)) {
     const std::string error = std::isnan(gain.error) ? "" : fmt::format(" +- {:.3f}", gain.error);
-    const bool chance = !std::isnan(gain.error) && std::abs(gain.mean) <= gain.error;
-    parts.push_back(fmt::format("against `{}` each sample is {}, {:+.3f}{} nats{}", other, likelihood_words(gain.mean),
-                                gain.mean, error, chance ? ", within its error" : ""));
+    const bool chance = std::abs(gain.mean) <= gain.error;
+    parts.push_back(
+        fmt::format("{:+.3f}{} nats over `{}`{}", gain.mean, error, other, chance ? ", within its error" : ""));
   }
   if (!forecast.c_filter.empty())
     parts.push_back("in C `" + forecast.c_filter + "`" +
@@ -234,7 +227,7 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   std::vector<NamedForecast> forecasts;
   for (const Index steps : horizons) {
     const std::vector<Reached> all = reached_in_training(archive, steps);
-    if (const Reached* chosen = best_of(all)) forecasts.push_back(named(archive, all, *chosen, steps));
+    if (const Reached* chosen = best_of(archive, all, steps)) forecasts.push_back(named(archive, all, *chosen, steps));
   }
   return forecasts;
 }
@@ -243,13 +236,9 @@ std::string use_words(const Archive& archive) {
   if (!archive.finding || !archive.bank) return "";
   const std::vector<NamedForecast> forecasts = named_forecasts(archive);
   std::string text = "to understand the motion: " + understanding(archive);
-  const bool alike = std::all_of(forecasts.begin(), forecasts.end(),
-                                 [&](const NamedForecast& f) { return f.filter == forecasts.front().filter; });
   for (const NamedForecast& forecast : forecasts) {
-    text += &forecast == &forecasts.front() ? "; to predict" : ";";
-    if (!alike) text += " " + steps_words(forecast.steps);
-    text += fmt::format(": `--track.filter {}`{}", forecast.filter, worth(archive, forecast));
-    if (alike) break;
+    text += fmt::format("; {}{}: `--track.filter {}`{}", &forecast == &forecasts.front() ? "to predict " : "",
+                        steps_words(forecast.steps), forecast.filter, worth(archive, forecast));
   }
   return text + least_errors(forecasts);
 }

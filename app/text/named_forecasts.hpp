@@ -25,15 +25,15 @@ struct NamedForecast {
 /// One entry per scored horizon, horizon 1 first; empty without scores.
 /// - Only training runs decide. Their predictions come from filters that were learned without them (/bank/left_out). If
 ///   no runs were left out, they come from the archive's filters.
-/// - The combination is named if its log score is at least 0.002 nats better than that of every single filter.
-/// - Otherwise the filters with a log score less than 0.02 nats below the best are compared. The filter with the
-///   smallest root mean square error is named.
+/// - Of the filters with a log score less than 0.02 nats below the best, the simplest is named: a competitor in their
+///   order, the bank, then the combination. Nothing is named against the finding's simpler model (or best competitor)
+///   that is as good on the judged runs.
 /// - `point_filter` is the best choice if only the error matters.
 std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
-/// One sentence on the finding and the named filters, such as: "to understand the motion: the 3 modes; to predict:
-/// `--track.filter combined` (against `drifting` each sample is 4.2 % more likely, +0.041 +- 0.012 nats; ...)". Gains
-/// are over the finding's best competitor. Horizons with the same named filter share an entry.
+/// One sentence on the finding and the named filters, such as: "to understand the motion: the 3 modes; to predict 1
+/// step ahead: `--track.filter combined` (+0.041 +- 0.012 nats over `drifting`; ...); 10 steps ahead: ...". Gains are
+/// over the finding's best competitor.
 std::string use_words(const Archive& archive);
 
 }  // namespace modebank::app

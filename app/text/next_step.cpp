@@ -10,13 +10,16 @@
 #include "app/text/judged_runs.hpp"
 #include "app/text/named_forecasts.hpp"
 #include "app/text/warnings.hpp"
-#include "filter/judge/decide/calibration_reason.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 #include "ident/fit/window_length.hpp"
 #include "ident/lag/structure.hpp"
 #include "io/import/split.hpp"
 
 namespace modebank::app {
 namespace {
+
+/// Number of restarts to advise. If it does not help, a larger number does not help either.
+constexpr int many_restarts = 20;
 
 struct Situation {
   const Archive& archive;
@@ -51,7 +54,8 @@ Index window_and_lags(const Situation& s) {
 }
 
 bool is_uncertain_wrongly(const Situation& s) {
-  return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident;
+  return s.bank.verdict == Calibration::overconfident || s.bank.verdict == Calibration::underconfident ||
+         reason_of(s.bank) == CalibrationReason::nis;
 }
 
 /// Whether few restarts agree. This applies only to a bank made directly from the mixture, because refinement has its
@@ -64,8 +68,6 @@ bool has_few_agreeing_restarts(const Situation& s) {
                      [](const Candidate& c) { return c.selected && 2 * c.agreeing_restarts < c.restarts; });
 }
 
-std::string counted_runs(Index runs) { return fmt::format("{} run{}", runs, runs == 1 ? "" : "s"); }
-
 /// Advice such as "ready: use the simpler one_motion (one linear model with changing noise): `modebank track ARCHIVE
 /// ...`".
 std::string use_simpler(const Situation& s, const std::string& simpler, const std::string& why) {
@@ -75,11 +77,15 @@ std::string use_simpler(const Situation& s, const std::string& simpler, const st
 
 /// Advice such as "record about 9 more runs like these". Errors and margins decrease with the square root of the number
 /// of runs.
-std::string more_runs(const Finding& finding) {
+std::string more_runs(const Situation& s) {
   constexpr double too_many = 20.0;  // largest advised number of runs, relative to the present number
   const char* const and_repeat = ", and repeat with them: `modebank run CONFIG`; --data.test holds out more";
+  const Finding& finding = s.finding;
+  const bool stretches = s.archive.recording && are_stretches(*s.archive.recording);
   const PairedGain* const least = least_beaten(finding);
-  if (!least) return fmt::format("record longer runs, and more than {}{}", counted_runs(finding.runs), and_repeat);
+  if (!least)
+    return fmt::format("record longer runs, and more than {} {}{}", finding.runs, noun_of_runs(finding.runs, stretches),
+                       and_repeat);
   const double times = std::pow(std::max(least->margin / least->gain, 1.0), 2.0);
   if (times > too_many)
     return fmt::format(
@@ -87,9 +93,9 @@ std::string more_runs(const Finding& finding) {
         "`modebank track ARCHIVE --track.filter {1}`",
         too_many, least->competitor);
   const double runs = std::ceil((times - 1.0) * static_cast<double>(finding.runs));
-  return fmt::format("record {} like these, enough to confirm the gain over {}{}",
-                     runs > 1.0 ? fmt::format("about {:.0f} more runs", runs) : "one more run", least->competitor,
-                     and_repeat);
+  return fmt::format("record {0} {3} like these, enough to confirm the gain over {1}{2}",
+                     runs > 1.0 ? fmt::format("about {:.0f} more", runs) : "one more", least->competitor, and_repeat,
+                     noun_of_runs(runs > 1.0 ? 2 : 1, stretches));
 }
 
 std::string advice_on_doubt(const Situation& s) {
@@ -99,7 +105,7 @@ std::string advice_on_doubt(const Situation& s) {
     return "the data cannot tell modes this short from noisy inputs; to predict, use them all the same: `modebank "
            "track "
            "ARCHIVE`";
-  if (doubt != Doubt::errors_unknown) return more_runs(s.finding);
+  if (doubt != Doubt::errors_unknown) return more_runs(s);
   if (std::atoi(s.setting("bank.look_ahead").c_str()) > 1)
     return "compute standard errors, by which modes are told apart: `modebank run CONFIG --bank.look_ahead 1`";
   return "leave out inputs that hardly vary, since they leave modes without standard errors: `modebank check CONFIG` "
@@ -169,7 +175,7 @@ const Rule rules[] = {
      left_pattern},
     {[](const Situation& s) { return errors_follow_a_pattern(s.bank); },
      [](const Situation&) -> std::string {
-       return "errors follow a pattern: `modebank check CONFIG` looks for late stamps and for what the model lacks";
+       return "errors follow a pattern: `modebank check CONFIG` looks for late stamps";
      }},
     {[](const Situation& s) { return is_uncertain_wrongly(s) && s.setting("filter.noise") != "adaptive"; },
      [](const Situation&) -> std::string {

@@ -7,10 +7,6 @@
 
 namespace modebank::app {
 
-/// Number of restarts to advise or try. It is tried only once. If it does not help, a larger number does not help
-/// either.
-inline constexpr int many_restarts = 20;
-
 /// Resolved keys and their values, from the configuration in the archive.
 using Settings = std::map<std::string, std::string>;
 

@@ -70,7 +70,7 @@ Response response_of(const Bank& bank, const LinearModel& model) {
   for (Index lag = 0; lag < s.input_lags; ++lag) {
     const auto B = model.B.middleCols(lag * s.inputs, s.inputs);
     held += B;
-    late += static_cast<double>(s.input_delay - 1 + lag) * B;
+    for (Index j = 0; j < s.inputs; ++j) late.col(j) += static_cast<double>(s.input_delay[j] - 1 + lag) * B.col(j);
   }
   const PivotedLu lu(-model.A);
   const MatrixXd unknown = MatrixXd::Constant(bank.C.rows(), s.inputs, not_a_number);

@@ -11,6 +11,7 @@
 #include "app/text/calibration_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/warnings.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -48,7 +49,7 @@ std::string read_words(const Archive& archive, const Settings& settings) {
   const auto runs = [&](Role role) {
     const auto count = std::count_if(recording.runs.begin(), recording.runs.end(),
                                      [role](const Trajectory& t) { return t.role == role; });
-    return fmt::format("{} {} run{} ({} steps)", count, words_for(role), count == 1 ? "" : "s",
+    return fmt::format("{} {} {} ({} steps)", count, words_for(role), noun_of_runs(count, are_stretches(recording)),
                        recording.transitions(role));
   };
   const Index steps = recording.transitions(Role::train);
@@ -116,7 +117,7 @@ void add_scores(FirstScreen& screen, const Archive& archive) {
   screen.mean = mean_words(screen);
   screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;
   if (const DiagnosticsRow* row = diagnosis(archive, "bank", screen.role)) {
-    screen.band = band_text(*row);
+    screen.band = band_text(*row, screen.errors);
     screen.verdict_words = verdict_text(*row);
     screen.verdict = row->verdict;
     screen.coverage = row->coverage_95;
@@ -151,6 +152,10 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   FirstScreen screen;
   screen.read = read_words(archive, settings);
   if (archive.structure) screen.structure = structure_sentence(*archive.structure, acted_on(archive));
+  if (archive.baseline && archive.recording)
+    if (const std::string words = response_words(*archive.baseline, *archive.recording, 1, time_unit(settings));
+        !words.empty())
+      screen.structure += (screen.structure.empty() ? "one linear model: " : "; ") + words;
   screen.inputs_ahead = input_lag(archive, settings) < 0.0;
   screen.warning = warning_words(archive);
   screen.next = next_step(archive, settings);

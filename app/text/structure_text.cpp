@@ -27,19 +27,22 @@ std::string left_out_words(const FoundStructure& found) {
   return fmt::format("{} left-out training {}", found.parts, found.by_runs ? "runs" : "stretches");
 }
 
-std::string feedback_words(const FoundStructure& found) {
-  return fmt::format("the inputs react to the states (t = {:.1f}), so free runs are valid for such inputs only",
-                     found.feedback_t);
-}
-
 const StructureScore* of_linear(const FoundStructure& found) {
   const auto one = std::find_if(found.scores.begin(), found.scores.end(), [](const auto& s) { return s.linear; });
   return one == found.scores.end() ? nullptr : &*one;
 }
 
-std::string lag_words(std::ptrdiff_t state_lags, std::ptrdiff_t input_lags, std::ptrdiff_t delay, bool acted_on) {
+/// The noise lags of an ARMAX, and whether it is one of differences; empty for an ARX.
+std::string noise_words(const StructureScore& s) {
+  if (s.noise_lags == 0 && !s.differences) return "";
+  return fmt::format(", {}{}", counted(s.noise_lags, "noise lag"), s.differences ? ", in differences" : "");
+}
+
+std::string lag_words(std::ptrdiff_t state_lags, std::ptrdiff_t input_lags, const InputDelays& delay, bool acted_on) {
   std::string words = counted(state_lags, "state lag");
-  if (acted_on) words += fmt::format(", {}, delay {}", counted(input_lags, "input lag"), counted(delay, "sample"));
+  if (acted_on)
+    words += fmt::format(", {}, delay {} sample{}", counted(input_lags, "input lag"), fmt::join(delay.listed(), ", "),
+                         delay == 1 ? "" : "s");
   return words;
 }
 
@@ -47,7 +50,8 @@ std::string table_text(const FoundStructure& found, bool acted_on, int width) {
   using Column = TextTable::Column;
   std::vector<Column> columns{{"state lags", 10}};
   if (acted_on) columns.insert(columns.end(), {Column{"input lags", 10}, Column{"delay", 5}});
-  columns.insert(columns.end(), {Column{"log score", 10}, Column{"below the best", 18}, Column{"rmse", 10}});
+  columns.insert(columns.end(),
+                 {Column{"noise lags", 10}, Column{"log score", 10}, Column{"below the best", 18}, Column{"rmse", 10}});
   const auto asked = [&](double StructureScore::*score) {
     return std::any_of(found.scores.begin(), found.scores.end(),
                        [&](const StructureScore& s) { return !std::isnan(s.*score); });
@@ -61,10 +65,11 @@ std::string table_text(const FoundStructure& found, bool acted_on, int width) {
     more.push_back(score);
   }
   columns.push_back({"taken by", 8});
-  TextTable table(columns, acted_on ? 3 : 1);
+  TextTable table(columns, acted_on ? 4 : 2);
   for (const StructureScore& s : found.scores) {
-    std::vector<std::string> cells{fmt::format("{}", s.state_lags)};
+    std::vector<std::string> cells{fmt::format("{}{}", s.state_lags, s.differences ? " of differences" : "")};
     if (acted_on) cells.insert(cells.end(), {fmt::format("{}", s.input_lags), fmt::format("{}", s.input_delay)});
+    cells.push_back(s.noise_lags > 0 ? fmt::format("{}", s.noise_lags) : "");
     const bool left_out = !std::isnan(s.log_score);
     cells.push_back(left_out ? fmt::format("{:.4f}", s.log_score) : "");
     cells.push_back(s.loss == 0.0 || !left_out ? "" : fmt::format("{:.4f} +- {:.4f}", s.loss, s.loss_standard_error));
@@ -93,12 +98,13 @@ std::string structure_words(const FoundStructure& found, bool acted_on) {
 std::string structure_sentence(const FoundStructure& found, bool acted_on) {
   std::string text = "the modes take " + structure_words(found, acted_on);
   if (const StructureScore* linear = of_linear(found)) {
-    const std::string lags =
-        linear->chosen ? "the same" : lag_words(linear->state_lags, linear->input_lags, linear->input_delay, acted_on);
+    const std::string lags = linear->chosen ? "the same"
+                                            : lag_words(linear->state_lags, linear->input_lags,
+                                                        found.input_delay.with_latest(linear->input_delay), acted_on) +
+                                                  noise_words(*linear);
     text += fmt::format("; a single linear model takes {} (RMSE {} on {})", lags, rmse_cell(*linear),
                         left_out_words(found));
   }
-  if (found.feedback()) text += "; " + feedback_words(found);
   if (!found.remark.empty()) text += "; " + found.remark;
   return text;
 }
@@ -112,7 +118,6 @@ std::string structure_text(const FoundStructure& found, bool acted_on, int width
         found.structures, left_out_words(found), found.samples);
   text += "\n";
   if (!found.scores.empty()) text += table_text(found, acted_on, width);
-  if (found.feedback()) text += "          " + feedback_words(found) + "\n";
   if (!found.remark.empty()) text += "          " + found.remark + "\n";
   return text;
 }

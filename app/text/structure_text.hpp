@@ -16,7 +16,7 @@ std::string structure_words(const FoundStructure& found, bool acted_on);
 /// competitors with a single linear model.
 std::string taken_by(const StructureScore& score);
 
-/// One sentence for the first screen: the chosen structure, its scores on runs left out, and whether there is feedback.
+/// One sentence for the first screen: the chosen structure and its scores on runs left out.
 std::string structure_sentence(const FoundStructure& found, bool acted_on);
 
 /// Section of `show` on the structure. It states how the structure was chosen, with one row for each structure of the

@@ -120,8 +120,7 @@ std::string window_parameters_text(const Archive& archive, int width) {
                  fmt::format("{:.3g}", summary.standard_error(j)),
                  fmt::format("{:.0f} %", 100 * summary.significant(j))});
   }
-  return table.text(width) + fmt::format("R^2 of the increments {:.3f}, AIC {:.2f} (medians)\n",
-                                         fmt::join(summary.r_squared, " "), summary.aic);
+  return table.text(width) + fmt::format("R^2 of the increments {:.3f} (medians)\n", fmt::join(summary.r_squared, " "));
 }
 
 std::string mode_diagnostics_text(const Archive& archive, int width) {

@@ -56,19 +56,6 @@ std::string mixture_text(const Archive& archive) {
   return text;
 }
 
-/// Loss that a limit on the number of modes causes, on held-out runs if there are any.
-std::string merging_text(const Archive& archive) {
-  const Role role = judged_role(archive);
-  for (const MergingCost& cost : archive.merging)
-    if (cost.role == role)
-      return fmt::format(
-          "merged    {} components into {} modes: log score on {} runs {}, without the limit ({} modes) {}: a loss of "
-          "{}\n",
-          cost.components, cost.modes, words_for(role), fixed_or_short(cost.log_score, 4), cost.modes_unlimited,
-          fixed_or_short(cost.log_score_unlimited, 4), fixed_or_short(cost.loss, 4));
-  return "";
-}
-
 std::string bank_text(const Bank& bank) {
   std::string text = fmt::format("bank      {} modes", bank.mode_count());
   for (const ScreenedMode& mode : bank.screened)
@@ -205,7 +192,7 @@ std::string summary_text(const Archive& archive, int width) {
   }
   if (archive.mixture) text += mixture_text(archive);
   if (archive.bank) {
-    text += bank_text(*archive.bank) + merging_text(archive);
+    text += bank_text(*archive.bank);
     if (archive.learned_transitions > 0 && archive.recording)
       text += fmt::format("learned   {}\n",
                           learned_words(archive.learned_transitions, archive.recording->transitions(Role::train)));

@@ -15,15 +15,8 @@ void WindowCounts::add(const WindowFits& fits) {
   for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
 }
 
-std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts& counts) {
+std::vector<Warning> window_warnings(const WindowCounts& counts) {
   std::vector<Warning> warnings;
-  if (fits.audit.replaced > 0)
-    warnings.push_back(
-        {WarningKind::replaced_windows,
-         fmt::format("the batch solver's cost was above Ceres' by more than {:.0e} relative, or its gradient above "
-                     "{:.0e}, in {} of {} audited windows. These windows were solved again by {}",
-                     WindowAudit::tolerance, WindowAudit::gradient_tolerance, fits.audit.replaced, fits.audit.checked,
-                     fits.audit.ceres_method)});
   if (const Index failed = counts.of(FitStatus::failed); failed > 0)
     warnings.push_back(
         {WarningKind::failed_windows, fmt::format("{} of {} windows have no finite fit and are left out; their samples "
@@ -80,7 +73,7 @@ std::vector<Warning> archive_warnings(const Archive& archive) {
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    warnings = window_warnings(*archive.windows, counts);
+    warnings = window_warnings(counts);
   }
   const auto add = [&](WarningKind kind, const std::string& text) {
     if (!text.empty()) warnings.push_back({kind, text});

@@ -18,28 +18,20 @@ struct WindowCounts {
 };
 
 /// Subject of a warning:
-/// - replaced_windows, failed_windows: the batch solver's audit, and fits that are not finite.
+/// - failed_windows: fits that are not finite.
 /// - mixture: the choice of the mixture that the bank is made of.
 /// - iteration_limit, stalled: the fit with measurement noise.
 /// - no_stable_mode: all modes are unstable.
 /// - unscored: measured samples without a score.
-enum class WarningKind {
-  replaced_windows,
-  failed_windows,
-  mixture,
-  iteration_limit,
-  stalled,
-  no_stable_mode,
-  unscored
-};
+enum class WarningKind { failed_windows, mixture, iteration_limit, stalled, no_stable_mode, unscored };
 
 struct Warning {
   WarningKind kind;
   std::string text;
 };
 
-/// Warnings on windows whose solution the audit has replaced, and on windows without a finite fit.
-std::vector<Warning> window_warnings(const WindowFits& fits, const WindowCounts& counts);
+/// Warnings on windows without a finite fit.
+std::vector<Warning> window_warnings(const WindowCounts& counts);
 
 /// Warning on the refinement of the bank; empty if it has converged.
 std::string refinement_warning(MeasuredFit fit);

@@ -11,28 +11,6 @@
 #include "ident/model/parameter_labels.hpp"
 
 namespace modebank::app {
-namespace {
-
-/// The solvers of the windows, and the batch solver's audit. Empty if the archive has no audit.
-std::string audit_text(const WindowAudit& audit) {
-  if (audit.ceres_method.empty()) return "";
-  std::string text = "solved    ";
-  if (audit.batch > 0) text += fmt::format("{} windows by {} (batch solver)", audit.batch, audit.batch_method);
-  if (audit.batch > 0 && audit.ceres > 0) text += ", ";
-  if (audit.ceres > 0) text += fmt::format("{} windows by {}", audit.ceres, audit.ceres_method);
-  if (audit.batch + audit.ceres == 0) text += "no window";
-  text += "\n";
-  if (audit.checked == 0) return text;
-  text +=
-      fmt::format("audit     {} of the batch solver's windows against Ceres alone: cost differs by {:.1e} relative, ",
-                  audit.checked, audit.cost_difference);
-  text += fmt::format("gradient {:.1e} (Ceres {:.1e}); parameters by {:.1e} standard errors", audit.gradient,
-                      audit.ceres_gradient, audit.parameter_difference);
-  if (audit.lower > 0) text += fmt::format("; {} in a lower minimum than that of Ceres", audit.lower);
-  return text + "\n";
-}
-
-}  // namespace
 
 std::vector<std::string> window_labels(const Archive& archive) {
   if (!archive.windows) return {};
@@ -71,8 +49,7 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts, con
       fmt::format("windows   {} of {} steps: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
                   counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
                   counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
-  text += audit_text(fits.audit);
-  for (const Warning& warning : window_warnings(fits, counts)) text += "warning   " + warning.text + "\n";
+  for (const Warning& warning : window_warnings(counts)) text += "warning   " + warning.text + "\n";
   text += "global    ";
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);

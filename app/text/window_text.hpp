@@ -9,8 +9,7 @@
 /// Texts on windows and on the clustered features.
 namespace modebank::app {
 
-/// The summary's lines on windows: their number and status, the global model, and the batch solver's audit. `labels`:
-/// labels of the parameters.
+/// The summary's lines on windows: their number and status, and the global model. `labels`: parameters.
 std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
 
 /// The parameter_labels of the archive's windows; empty if it has no windows.

@@ -26,7 +26,7 @@ SECTIONS = {
     "study": "What a parameter study varies, and how its runs are made: [](../tutorials/first_study.md).",
     "track": "The live filter: [](../howto/live_filter.md).",
     "report": "Pages: [](../howto/report.md).",
-    "simulate": "Runs with known truth: [](../explanation/vehicle.md).",
+    "simulate": "Runs with known truth by {eq}`eq-model`; `configs/systems` has the built-in systems.",
 }
 
 

@@ -35,6 +35,10 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor = {});
 
+/// The same competitor with theta, C and R of a single filter whose R is known beside Q: eight levels of its Q, from a
+/// quarter to 32 times. (Residuals of exact states would count R twice.)
+Bank noise_levels_of(const Bank& single, const Recording& recording);
+
 /// learn_noise_only with another number of noise scales.
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                         Eigen::Index levels, const NoiseFactor& factor = {});

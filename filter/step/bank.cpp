@@ -200,6 +200,8 @@ bool has_one_theta(const Bank& bank) {
 }
 
 void validate(const Bank& bank) {
+  const InputDelays& delay = bank.structure.input_delay;
+  require(delay.earliest() >= 0 && delay.fits(bank.structure.inputs), "input delays are not one per input, each >= 0");
   check_sizes(bank);
   require(is_covariance(bank.R),
           "R is not a covariance matrix: expected a finite, symmetric, positive semidefinite one");

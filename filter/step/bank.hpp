@@ -10,6 +10,7 @@
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
+#include "ident/model/step_response.hpp"
 #include "ident/model/terms.hpp"
 #include "modebank/filter/screened_mode.hpp"
 
@@ -52,6 +53,7 @@ struct Mode {
   /// added to x[k+1].
   Eigen::MatrixXd bend = {};
   Eigen::MatrixXd bend_standard_error = {};  ///< their standard errors, in the same order; empty without terms
+  EstimatedStepResponse response = {};       ///< response to steps of the inputs; empty but for single models
 };
 
 /// Speed at which the noise scale follows a run (filter/step/equations/noise_scale.hpp).

@@ -1,8 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <string>
-#include <vector>
 
 #include "modebank/filter/wandering.hpp"
 
@@ -17,14 +15,10 @@ struct DriftRates {
   bool operator==(const DriftRates&) const = default;
 };
 
-/// Log score of the settings that were chosen on a grid, on the training runs. Also whether the grid was wide enough.
+/// Log score of the settings that were chosen on a grid, on the training runs.
 struct GridTuning {
   double log_score = 0.0;    ///< log score of the training runs [nats/sample]
   Eigen::Index samples = 0;  ///< number of scored training samples
-
-  /// Settings at the end of their grid; the best value may lie beyond the grid. Names: "q", "p0", "leak", "lam", "nu",
-  /// "floor", "horizon_factor".
-  std::vector<std::string> at_grid_end;
 };
 
 /// Drift of the coefficients of a bank's modes within a run (equations/drift.hpp); v is each mode's Q.

@@ -74,7 +74,7 @@ std::unique_ptr<Forecaster::Sized> Forecaster::sized(const Bank& bank, const Fil
 Forecaster::Forecaster(const Bank& bank, const FilterOptions& options)
     : sized_(sized(bank, options)),
       inputs_(bank.structure.inputs),
-      input_delay_(bank.structure.input_delay),
+      earliest_input_(bank.structure.input_delay.earliest()),
       measurements_(bank.C.rows()),
       feed_(bank) {}
 
@@ -83,10 +83,10 @@ Forecaster::~Forecaster() = default;
 std::vector<StateForecast> Forecaster::ahead(const FilterSnapshot& from,
                                              const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) {
   if (steps < 1) throw std::invalid_argument("steps: a forecast needs at least 1 step, not " + std::to_string(steps));
-  if (inputs_ > 0 && (inputs.rows() != inputs_ || inputs.cols() < steps - input_delay_))
+  if (inputs_ > 0 && (inputs.rows() != inputs_ || inputs.cols() < steps - earliest_input_))
     throw std::invalid_argument("inputs: a forecast of " + std::to_string(steps) + " steps takes " +
                                 std::to_string(inputs_) + " inputs of " +
-                                std::to_string(std::max<Index>(steps - input_delay_, 0)) + " samples or more, not " +
+                                std::to_string(std::max<Index>(steps - earliest_input_, 0)) + " samples or more, not " +
                                 std::to_string(inputs.rows()) + " of " + std::to_string(inputs.cols()));
   if (!inputs.allFinite()) throw std::invalid_argument("inputs: planned inputs must be finite");
   const Index n = from.means.rows();

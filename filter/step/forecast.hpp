@@ -1,12 +1,15 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
 #include <memory>
 #include <vector>
 
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/drifting_forecast.hpp"
 #include "filter/step/equations/filter_step.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
 /// Predictions without measurements, from a filter's state and with known inputs. All such predictions use this header.
@@ -64,7 +67,6 @@ class BankForecast {
     ahead_ = true;
   }
 
-  const FilterModel<N, NY>& model() const { return model_; }
   const FilterStep<N, NY>& predicted() const { return step_; }
 
   /// Mean and covariance of the predicted state, combined over all modes.
@@ -97,6 +99,18 @@ class BankForecast {
       error -= step_.predicted_probability(i) * (y - step_.kalman[h].innovation);
     }
     return bayes(step_.predicted_probability, step_.log_likelihood, posterior_);
+  }
+
+  /// Distribution of signal i, whatever the other signals are. The rounding of a recorded value widens it.
+  NormalMixture signal(Eigen::Index i) const {
+    NormalMixture result{step_.predicted_probability, step_.predicted_probability, step_.predicted_probability};
+    const double rounding = model_.quantum(i) * model_.quantum(i) / 12.0;
+    for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
+      const auto j = static_cast<Eigen::Index>(h);
+      result.mean(j) = model_.C.row(i).dot(step_.kalman[h].predicted.mean);
+      result.deviation(j) = std::sqrt(std::max(step_.kalman[h].innovation_covariance(i, i) + rounding, least_variance));
+    }
+    return result;
   }
 
  private:
@@ -134,9 +148,9 @@ class Forecaster {
   ~Forecaster();
 
   /// Predicts the next `steps` samples, one model step apart, from a filter state of this bank. Column i of `inputs` (m
-  /// x c) is the input recorded at the sample i + 1 ahead. An input acts input_delay samples later, so the last
-  /// input_delay columns have no effect and may be omitted. Before the filter's start, states are NaN. Throws
-  /// std::invalid_argument for too few inputs, for inputs that are not finite, and for steps below 1.
+  /// x c) is the input recorded at the sample i + 1 ahead. Inputs act input_delay samples later, so as many of the
+  /// last columns as the earliest input is late have no effect and may be omitted. Before the filter's start, states
+  /// are NaN. Throws std::invalid_argument for too few inputs, for inputs that are not finite, and for steps below 1.
   std::vector<StateForecast> ahead(const FilterSnapshot& from, const Eigen::Ref<const Eigen::MatrixXd>& inputs,
                                    Eigen::Index steps);
 
@@ -147,7 +161,7 @@ class Forecaster {
   struct OfRunningNoise;
   static std::unique_ptr<Sized> sized(const Bank& bank, const FilterOptions& options);
   std::unique_ptr<Sized> sized_;
-  Eigen::Index inputs_, input_delay_, measurements_;
+  Eigen::Index inputs_, earliest_input_, measurements_;
   SampleFeed feed_;
 };
 

@@ -192,23 +192,19 @@ void blank_gaps(const VectorXd& stream_time_s, const VectorXd& time_s, MatrixXd&
   }
 }
 
-MatrixXd hold_mid_transition(const Stream& inputs, const VectorXd& time_s, const InputClock& clock) {
+MatrixXd hold_mid_transition(const Stream& inputs, const VectorXd& time_s, double lag_s) {
   const Index N = time_s.size();
   const double half_period = 0.5 * median_period_s(time_s);
   VectorXd middle(N);
   for (Index k = 0; k < N; ++k) {
     const double t = time_s(k) + (k + 1 < N ? std::min(0.5 * (time_s(k + 1) - time_s(k)), half_period) : half_period);
-    middle(k) = t - clock.at(t);
+    middle(k) = t - lag_s;
   }
   return hold(inputs, middle);
 }
 
 VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_s, const JoinTimes& options) {
-  // On the states' clock, sample s acts at t = s + lag, because t - lag(t) = s.
-  const auto acts_at = [&](double s) {
-    return options.drift == 0.0 ? s + options.lag_s
-                                : (s + options.lag_s - options.drift * options.reference_s) / (1.0 - options.drift);
-  };
+  const auto acts_at = [&](double s) { return s + options.lag_s; };  // on the states' clock
   const double first = std::max(states_time_s(0), acts_at(inputs_time_s(0)));
   const double end = std::min(last(states_time_s), acts_at(last(inputs_time_s)));
   if (options.rate_hz > 0.0) {
@@ -217,7 +213,7 @@ VectorXd joint_times(const VectorXd& states_time_s, const VectorXd& inputs_time_
     grid.skip_gaps(inputs_time_s, acts_at);
     return grid.times();
   }
-  if (options.lag_s == 0.0 && options.drift == 0.0) return times_within(inputs_time_s, first, end);
+  if (options.lag_s == 0.0) return times_within(inputs_time_s, first, end);
   const double rounding = time_tolerance(inputs_time_s);  // the rounding of t - lag_s must not exclude a sample
   return times_within(inputs_time_s, std::max(states_time_s(0), first - rounding),
                       std::min(last(states_time_s), end + rounding));

@@ -3,8 +3,6 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "ident/data/input_clock.hpp"
-
 namespace modebank {
 
 /// Signals with common sample times, one sample per column.
@@ -69,20 +67,18 @@ void blank_gaps(const Eigen::VectorXd& stream_time_s, const Eigen::VectorXd& tim
 
 struct JoinTimes {
   double rate_hz = 0.0;  ///< 0 keeps the inputs' own times; otherwise the times are the first common time + k / rate_hz
-  double lag_s = 0.0;    ///< the input that acts at time t is u(t - lag(t)), lag = lag_s + drift (t - reference_s)
-  double drift = 0.0;
-  double reference_s = 0.0;
+  double lag_s = 0.0;    ///< the input that acts at time t is u(t - lag_s); negative: the stamps are late
 };
 
 /// The times that both streams cover after the inputs are delayed. They satisfy first <= t <= last of the states, and
-/// first <= t - lag(t) <= last of the inputs. May be empty. Requires drift < 1.
+/// first <= t - lag_s <= last of the inputs. May be empty.
 Eigen::VectorXd joint_times(const Eigen::VectorXd& states_time_s, const Eigen::VectorXd& inputs_time_s,
                             const JoinTimes& options);
 
-/// The inputs, delayed by `clock`, that act in the middle of each transition from time_s(k) to time_s(k + 1). For the
-/// last column a further transition of the median period is assumed. If the inputs have these times and `clock` is 0,
+/// The inputs, delayed by `lag_s`, that act in the middle of each transition from time_s(k) to time_s(k + 1). For the
+/// last column a further transition of the median period is assumed. If the inputs have these times and `lag_s` is 0,
 /// the result is the input of time_s(k). Otherwise the delay is rounded to the nearest whole number of samples. (Inputs
 /// held at time_s(k) would have a delay that is rounded up.)
-Eigen::MatrixXd hold_mid_transition(const Stream& inputs, const Eigen::VectorXd& time_s, const InputClock& clock);
+Eigen::MatrixXd hold_mid_transition(const Stream& inputs, const Eigen::VectorXd& time_s, double lag_s);
 
 }  // namespace modebank

@@ -34,11 +34,4 @@ std::vector<WindowPlan::Range> WindowPlan::ranges(Index first, Index count, Inde
   return result;
 }
 
-std::vector<Window> make_windows(const Recording& recording, Index length, Index step, Index first) {
-  const WindowPlan plan(recording, length, step, first);
-  std::vector<Window> windows;
-  for (Index i = 0; i < plan.count(); ++i) windows.push_back(plan.window(i));
-  return windows;
-}
-
 }  // namespace modebank

@@ -38,7 +38,4 @@ class WindowPlan {
   Index count_ = 0;
 };
 
-/// The windows of a WindowPlan as a list.
-std::vector<Window> make_windows(const Recording& recording, Index length, Index step, Index first = 0);
-
 }  // namespace modebank

@@ -26,7 +26,6 @@ Windows from_internal(const WindowFits& fits) {
   for (const char batch : fits.by_batch) windows.solver.push_back(batch ? WindowSolver::batch : WindowSolver::ceres);
   windows.prior_sd = to_vector(fits.prior_sd);
   windows.global_theta = to_vector(fits.global.theta);
-  windows.audit = fits.audit;
   return windows;
 }
 

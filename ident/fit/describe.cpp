@@ -1,9 +1,7 @@
 #include "ident/fit/describe.hpp"
 
-#include <algorithm>
 #include <cmath>
 
-#include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/fit/covariance.hpp"
@@ -38,41 +36,6 @@ auto residuals_of(const WhitenedProblem& problem, const RobustTerms& terms, Inde
   return Strided(terms.residual.data() + i, problem.samples, Eigen::InnerStride<>(problem.states));
 }
 
-double gaussian_deviance(const WhitenedProblem& problem, const RobustTerms& terms, const NoiseScale& scale) {
-  const double L = static_cast<double>(problem.samples);
-  double deviance = 0.0;
-  for (Index i = 0; i < problem.states; ++i) {
-    const double mean_square = residuals_of(problem, terms, i).squaredNorm() / L;
-    const double floor = scale.floor(i) / scale.sigma(i);
-    const double variance = std::max(mean_square, floor * floor);
-    deviance += L * (log_two_pi + std::log(variance) + 2.0 * std::log(scale.sigma(i)) + 1.0);
-  }
-  return deviance;
-}
-
-double robust_deviance(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
-                       const Eigen::VectorXd& sigma) {
-  const double L = static_cast<double>(problem.samples);
-  double deviance = L * (static_cast<double>(problem.states) * log_two_pi + 2.0 * sigma.array().log().sum());
-  for (Index k = 0; k < problem.samples; ++k) {
-    const double w = problem.sample_weight(k);
-    deviance += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
-  }
-  return deviance;
-}
-
-/// sum w psi^2 / sum w psi' over all samples and states.
-double price_of_a_parameter(const WhitenedProblem& problem, const RobustTerms& terms) {
-  double psi_square = 0.0, slope = 0.0;
-  for (Index k = 0; k < problem.samples; ++k) {
-    const double square = terms.sample(k, problem.states).squaredNorm();
-    psi_square += terms.weight(k) * terms.weight(k) * square;
-    const double trace = static_cast<double>(problem.states) * terms.weight(k) + 2.0 * terms.curvature(k) * square;
-    slope += problem.sample_weight(k) * trace;  // trace of the influence function's slope
-  }
-  return slope > 0.0 ? psi_square / slope : not_a_number;
-}
-
 }  // namespace
 
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
@@ -91,17 +54,6 @@ Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem&
   return result;
 }
 
-double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
-                        const NoiseScale& scale) {
-  const double n = static_cast<double>(problem.states);
-  const double parameters = problem.J.topRows(problem.sample_rows()).squaredNorm();  // J'J = I, so this is the sum of
-                                                                                     // the leverages
-  const double weights = problem.weight.size() > 0 ? n * problem.weight.array().log().sum() : 0.0;
-  if (loss.kind() == Loss::trivial) return gaussian_deviance(problem, terms, scale) - weights + 2.0 * (parameters + n);
-  const double price = price_of_a_parameter(problem, terms);
-  return robust_deviance(problem, terms, loss, scale.sigma) - weights + 2.0 * (price * parameters + n);
-}
-
 LocalModel describe_fit(const SolvedWindow& s, const Eigen::VectorXd& theta) {
   const Index p = theta.size();
   LocalModel fit;
@@ -117,7 +69,6 @@ LocalModel describe_fit(const SolvedWindow& s, const Eigen::VectorXd& theta) {
   fit.information = information(fit.covariance, s.prior);
   fit.inlier_fraction = (s.terms.weight.array() >= inlier_weight).cast<double>().mean();
   fit.r_squared = r_squared(s.transitions, s.problem, s.terms, s.scale.sigma);
-  fit.aic = akaike_criterion(s.problem, s.terms, s.loss, s.scale);
   fit.transitions = s.problem.samples;
   return fit;
 }
@@ -131,7 +82,6 @@ LocalModel failed_fit(Index parameters, Index states) {
   fit.information = fit.theta;
   fit.inlier_fraction = not_a_number;
   fit.r_squared = fit.noise_variance;
-  fit.aic = not_a_number;
   fit.status = FitStatus::failed;
   return fit;
 }

@@ -12,8 +12,7 @@ struct SolvedWindow {
   const WhitenedProblem& problem;
   const RobustTerms& terms;
   const Transitions& transitions;  ///< transitions of the window; only their increments are used
-  const RobustLoss& loss;
-  double consistency = 1.0;  ///< result of `gaussian_consistency` for the loss
+  double consistency = 1.0;        ///< result of `gaussian_consistency` for the loss
   CovarianceKind covariance = CovarianceKind::model;
   const NoiseScale& scale;
   const ParameterPrior* prior = nullptr;
@@ -36,18 +35,6 @@ LocalModel describe_fit(const SolvedWindow& solved, const Eigen::VectorXd& theta
 /// least squares. It may be negative without an intercept or with a prior. NaN for constant increments.
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma);
-
-/// Akaike's criterion; lower is better. Comparable between fits of the same samples with the same loss.
-/// Trivial loss: L sum_i [log(2 pi sum_k w e_i^2 / L) + 1] - n sum log w + 2 (f + n). This is -2 log of the Gaussian
-/// likelihood at its maximising noise variances (not below the floor), which count as n parameters.
-/// Other losses: L n log(2 pi) + 2 L sum_i log sigma_i + sum w rho(|e / sigma|^2) - n sum log w + 2 (a f + n). a = sum
-/// w psi^2 / sum w psi' is the cost of a parameter under rho (Ronchetti 1985, Statistics & Probability Letters 3;
-/// Burman & Nolan 1995, Biometrika 82). For rho(s) = s it equals the first form. NaN unless psi' is positive on
-/// average.
-/// f is the sum of the samples' leverages: p, or n times the rank. With a prior it is the part of p that data determine
-/// (Hastie & Tibshirani 1990).
-double akaike_criterion(const WhitenedProblem& problem, const RobustTerms& terms, const RobustLoss& loss,
-                        const NoiseScale& scale);
 
 /// Result for data that are not finite or cannot be fitted: all NaN, rank 0.
 LocalModel failed_fit(Index parameters, Index states);

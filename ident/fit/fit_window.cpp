@@ -62,7 +62,6 @@ LocalModel fit_transitions(const Transitions& transitions, const Decomposition& 
   LocalModel fit = describe_fit({.problem = problem,
                                  .terms = terms,
                                  .transitions = transitions,
-                                 .loss = estimator.loss,
                                  .consistency = estimator.consistency,
                                  .covariance = estimator.covariance,
                                  .scale = scale,
@@ -71,7 +70,6 @@ LocalModel fit_transitions(const Transitions& transitions, const Decomposition& 
                                  .rank_per_state = static_cast<double>(decomposition.rank())},
                                 problem.theta(minimum.z));
   if (!fit.theta.allFinite()) return fit;
-  fit.solved = minimum.status == FitStatus::converged;
   fit.condition = decomposition.condition;
   fit.rank = structure.states * decomposition.rank();
   fit.status = decomposition.rank() < structure.regressors() ? FitStatus::rank_deficient : minimum.status;

@@ -3,7 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <optional>
 #include <random>
@@ -15,7 +14,6 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/base/work_counter.hpp"
-#include "ident/fit/audit.hpp"
 #include "ident/fit/detail/batch/windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/prior.hpp"
@@ -36,10 +34,11 @@ void check_options(const FitOptions& options, Index parameters) {
           std::to_string(options.loss_scale), "positive, or 0 for the default");
   require(options.state_lags >= 1, "state_lags", std::to_string(options.state_lags), "at least 1");
   require(options.input_lags >= 1, "input_lags", std::to_string(options.input_lags), "at least 1");
-  require(options.input_delay >= 0, "input_delay", std::to_string(options.input_delay), "at least 0");
+  const Index earliest = options.input_delay.earliest();
+  require(earliest >= 0, "input_delay", std::to_string(earliest), "at least 0");
   require(options.max_iterations >= 1, "max_iterations", std::to_string(options.max_iterations), "at least 1");
-  if (options.scale == ScaleSource::fixed)
-    require(options.sigma > 0.0 && std::isfinite(options.sigma), "sigma", std::to_string(options.sigma), "positive");
+  require(options.sigma >= 0.0 && std::isfinite(options.sigma), "sigma", std::to_string(options.sigma),
+          "positive, or 0 for the scale of each window");
   const std::vector<double>& sd = options.prior_sd;
   require(sd.size() <= 1 || std::ssize(sd) == parameters, "prior_sd", std::to_string(sd.size()) + " values",
           "one value, or one per parameter (" + std::to_string(parameters) + ")");
@@ -109,9 +108,6 @@ class Fitting {
       prior_ = ParameterPrior{common_.global.theta, common_.prior_sd};
     }
     if (linear_) batch_ = BatchWindows::make(*linear_, plan_.count(), prior());
-    if (batch_) audited_ = audited_windows(plan_.count(), options.seed);
-    common_.audit.ceres_method = fitter_->method();
-    if (batch_) common_.audit.batch_method = BatchWindows::method();
   }
   Fitting(const Fitting&) = delete;  // must not be copied, because `fitter` refers to the global model
   Fitting& operator=(const Fitting&) = delete;
@@ -127,8 +123,6 @@ class Fitting {
     const auto ranges = plan_.ranges(first, count, longest_range(batch_.get()));
     tbb::parallel_for(std::size_t{0}, ranges.size(),
                       [&](std::size_t j) { fit_range(ranges[j], ranges[j].first - first, fits); });
-    audit(first, count, fits);
-    fits.audit = common_.audit;
   }
 
  private:
@@ -181,33 +175,8 @@ class Fitting {
       fits.windows[w] = window;
       fits.by_batch[w] = verdict && (*verdict)[static_cast<std::size_t>(i)] == batch::Verdict::solved ? 1 : 0;
       if (fits.by_batch[w]) continue;
-      const LocalModel fit = fitter_->fit(window, prior());
-      if (fit.solved) ++by_ceres_;
-      fits.set(column + i, fit);
+      fits.set(column + i, fitter_->fit(window, prior()));
     }
-  }
-
-  /// Counts the windows that each solver solved, and checks a sample of the batch solver's results.
-  void audit(Index first, Index count, WindowFits& fits) {
-    common_.audit.batch += std::count(fits.by_batch.begin(), fits.by_batch.end(), 1);
-    const auto begin = std::lower_bound(audited_.begin(), audited_.end(), first),
-               end = std::lower_bound(audited_.begin(), audited_.end(), first + count);
-    std::vector<AuditedWindow> results(static_cast<std::size_t>(end - begin));
-    tbb::parallel_for(std::size_t{0}, results.size(), [&](std::size_t i) {
-      const Index column = begin[static_cast<std::ptrdiff_t>(i)] - first;
-      const auto w = static_cast<std::size_t>(column);
-      if (fits.by_batch[w]) results[i] = audit_window(*linear_, fits.windows[w], prior(), fits.at(column));
-    });
-    for (std::size_t i = 0; i < results.size(); ++i) {
-      if (!add_to_audit(results[i], common_.audit)) continue;
-      const Index column = begin[static_cast<std::ptrdiff_t>(i)] - first;
-      const LocalModel fit = fitter_->fit(fits.windows[static_cast<std::size_t>(column)], prior());
-      --common_.audit.batch;
-      fits.by_batch[static_cast<std::size_t>(column)] = 0;
-      if (fit.solved) ++by_ceres_;
-      fits.set(column, fit);
-    }
-    common_.audit.ceres = by_ceres_;
   }
 
   WindowPlan plan_;
@@ -216,8 +185,6 @@ class Fitting {
   const LinearWindows* linear_ = nullptr;  ///< the fitter of linear models
   std::optional<ParameterPrior> prior_;
   std::unique_ptr<BatchWindows> batch_;
-  std::vector<Index> audited_;
-  std::atomic<Index> by_ceres_ = 0;
   std::optional<WorkCounter> counter_;  ///< counts of all windows so far
 };
 
@@ -241,6 +208,9 @@ FitOptions options_for(const MotionModel& model, const Recording& recording, Fit
 void check_model(const FitOptions& options, Index states, Index inputs) {
   if (has_lags(options) && options.model != "varx")
     throw ConfigurationError("state_lags, input_lags and input_delay need model = varx, not " + options.model);
+  if (!options.input_delay.fits(inputs))
+    throw ConfigurationError("input_delay takes one number, or one for each of the " + std::to_string(inputs) +
+                             " inputs");
   motion_model(options, states, inputs);
 }
 

@@ -13,11 +13,11 @@
 namespace modebank {
 
 /// Cuts and fits every window of the training runs, in parallel on oneTBB. Result i depends only on window i, the
-/// global model and the prior. sigma is the robust_scale of the window. With ScaleSource::run, and if L <= q, it is the
-/// robust_scale of the run. It is at least scale_floor. options.solver selects the solver; the batch solver's results
-/// are audited. The default prior comes from all full-rank windows, or from 200,000 randomly drawn windows (64
-/// consecutive windows at a time) if there are more. Throws DataError if no training run has options.length
-/// transitions. Throws ConfigurationError for an option out of range or a solver that does not support the model.
+/// global model and the prior. sigma is the robust_scale of the window. If L <= q, it is the
+/// robust_scale of the run. It is at least scale_floor. options.solver selects the solver. The default prior comes from
+/// all full-rank windows, or from 200,000 randomly drawn windows (64 consecutive windows at a time) if there are more.
+/// Throws DataError if no training run has options.length transitions. Throws ConfigurationError for an option out of
+/// range or a solver that does not support the model.
 WindowFits fit_windows(const Recording& recording, const FitOptions& options);
 
 /// Fits the windows of `fits`, a model with several lags, again with a one-lag model. All other options are the same.
@@ -28,7 +28,7 @@ WindowFits fit_one_lag(const Recording& recording, const WindowFits& fits, FitOp
 Index count_windows(const Recording& recording, const FitOptions& options);
 
 /// fit_windows in bounded memory. Passes the windows to `sink` in order, some ten thousand per call, from index `first`
-/// on. Each call fills all other fields; its audit covers the windows up to that call. Returns the common fields
+/// on. Each call fills all other fields. Returns the common fields
 /// without windows.
 using WindowSink = std::function<void(const WindowFits& fits, Index first)>;
 WindowFits stream_windows(const Recording& recording, const FitOptions& options, const WindowSink& sink);

@@ -104,6 +104,18 @@ GlobalModel fit_global(const Recording& recording, const LinearStructure& struct
   return global;
 }
 
+bool needs_constant(const Recording& recording, LinearStructure structure) {
+  constexpr double least_gain = 6.0;  // [nats]
+  constexpr Index rows_per_column = 3;
+  structure.intercept = true;
+  if (reduce(recording, structure).second < rows_per_column * structure.regressors()) return false;
+  const GlobalModel with = fit_global(recording, structure);
+  structure.intercept = false;
+  const GlobalModel without = fit_global(recording, structure);
+  const auto log_determinant = [](const GlobalModel& fit) { return std::log(fit.residual_covariance.determinant()); };
+  return static_cast<double>(with.transitions) / 2.0 * (log_determinant(without) - log_determinant(with)) >= least_gain;
+}
+
 std::vector<Index> unidentifiable_regressors(const Recording& recording, const LinearStructure& structure) {
   const auto [transitions, N] = reduce(recording, structure);
   if (N == 0) return {};

@@ -16,4 +16,8 @@ GlobalModel fit_global(const Recording& recording, const LinearStructure& struct
 /// weighted by the standard deviations of their residuals (three passes). Throws DataError without transitions.
 GlobalModel fit_global(const Recording& recording, const MotionModel& model);
 
+/// Whether the training runs need a constant: leaving it out of this structure, fitted by least squares, loses at least
+/// 6 nats of the Gaussian likelihood in all. (Where a pole is near 1, its t value does not follow a t distribution.)
+bool needs_constant(const Recording& recording, LinearStructure structure);
+
 }  // namespace modebank

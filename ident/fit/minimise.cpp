@@ -44,7 +44,6 @@ ceres::Problem::Options problem_options() {
 struct Tolerances {
   double function, gradient = 1e-14, parameter = 1e-12;
 };
-constexpr Tolerances tightest{1e-16, 1e-16, 1e-16};
 
 ceres::Solver::Options solver_options(const Tolerances& tolerances, int max_iterations) {
   ceres::Solver::Options options;
@@ -202,17 +201,6 @@ Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max
     if (minimum.status != FitStatus::converged || polish(problem, loss, minimum.z)) return finite_or_failed(minimum);
   }
   minimum.status = FitStatus::iteration_limit;  // Ceres cannot reduce the cost further, but the point is not stationary
-  return finite_or_failed(minimum);
-}
-
-Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss) {
-  constexpr int max_iterations = 1000;
-  Minimum minimum{Eigen::VectorXd::Zero(problem.unknowns()), FitStatus::failed};
-  if (!sound(problem)) return minimum;
-  minimum.status = FitStatus::converged;
-  if (problem.unknowns() == 0) return minimum;
-  if (!loss.convex()) minimum.z = minimise_by_ceres_alone(problem, RobustLoss(Loss::huber, 0.0)).z;
-  minimum.status = search(problem, loss, tightest, max_iterations, minimum.z);
   return finite_or_failed(minimum);
 }
 

@@ -56,7 +56,4 @@ struct Minimum {
 /// Ceres drops a negative rho'' and then converges only linearly. Deterministic, without output.
 Minimum minimise(const WhitenedProblem& problem, const RobustLoss& loss, int max_iterations);
 
-/// Ceres alone from the same start, at tolerances of 1e-16. Audits use it as reference.
-Minimum minimise_by_ceres_alone(const WhitenedProblem& problem, const RobustLoss& loss);
-
 }  // namespace modebank

@@ -218,7 +218,6 @@ LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& esti
   LocalModel fit = describe_fit({.problem = problem,
                                  .terms = terms,
                                  .transitions = responses,
-                                 .loss = estimator.loss,
                                  .consistency = estimator.consistency,
                                  .covariance = estimator.covariance,
                                  .scale = scale,
@@ -227,7 +226,6 @@ LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& esti
                                  .rank_per_state = static_cast<double>(excitation.rank()) / states},
                                 minimum.theta);
   if (!fit.theta.allFinite()) return fit;
-  fit.solved = minimum.status == FitStatus::converged;
   fit.condition = excitation.condition;
   fit.rank = excitation.rank();
   fit.status = excitation.rank() < p ? FitStatus::rank_deficient : minimum.status;

@@ -25,9 +25,6 @@ struct ModelMinimum {
   FitStatus status = FitStatus::failed;
 };
 
-/// Description of minimise_model for reports.
-inline constexpr char minimise_model_method[] = "Ceres to a relative change of the cost of 1e-16";
-
 /// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres. The search begins at `start` and
 /// stays within the bounds of the parameters. w_k are the sample weights of `residuals`. For non-convex losses the
 /// search starts from the Huber optimum. `sigma` has n positive entries; `prior` may be null.

@@ -13,7 +13,8 @@ inline bool is_linear(const FitOptions& options) { return options.model == "line
 /// The linear model that the options describe, for n states and m inputs. For a motion model it is the structure of its
 /// linearisations, with an intercept.
 inline LinearStructure linear_structure(Index states, Index inputs, const FitOptions& o) {
-  if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, o.input_delay};
+  const InputDelays delay = inputs > 0 ? o.input_delay : InputDelays();
+  if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, delay};
   return {states, inputs, is_linear(o) ? o.intercept : true};
 }
 

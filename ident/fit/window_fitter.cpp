@@ -1,10 +1,8 @@
 #include "ident/fit/window_fitter.hpp"
 
-#include <sstream>
 #include <utility>
 
 #include "ident/base/not_a_number.hpp"
-#include "ident/fit/constants.hpp"
 #include "ident/fit/describe.hpp"
 
 namespace modebank {
@@ -16,12 +14,6 @@ WindowFitter::WindowFitter(const Recording& recording, const FitOptions& options
       global_(global),
       floor_(std::move(floor)),
       run_scale_(std::make_unique<RunScale[]>(recording.runs.size())) {}
-
-std::string WindowFitter::method() const {
-  std::ostringstream words;
-  words << "Ceres, then Newton's method to a relative gradient of " << stationary_gradient;
-  return words.str();
-}
 
 const Eigen::VectorXd& WindowFitter::run_scale(Index run) const {
   RunScale& scale = run_scale_[static_cast<std::size_t>(run)];
@@ -35,8 +27,8 @@ const Eigen::VectorXd& WindowFitter::run_scale(Index run) const {
 
 Eigen::VectorXd WindowFitter::window_sigma(const Window& window, bool enough,
                                            const std::function<Eigen::VectorXd()>& own) const {
-  if (options_.scale == ScaleSource::fixed) return Eigen::VectorXd::Constant(floor_.size(), options_.sigma);
-  if (options_.scale == ScaleSource::run || !enough) return run_scale(window.run);
+  if (options_.sigma > 0.0) return Eigen::VectorXd::Constant(floor_.size(), options_.sigma);
+  if (!enough) return run_scale(window.run);
   const Eigen::VectorXd scale = own();
   return scale.allFinite() ? Eigen::VectorXd(scale.cwiseMax(floor_)) : run_scale(window.run);
 }

@@ -4,7 +4,6 @@
 #include <memory>
 #include <mutex>
 #include <optional>
-#include <string>
 
 #include "ident/data/window.hpp"
 #include "ident/fit/fit_window.hpp"
@@ -22,9 +21,6 @@ class WindowFitter {
   /// theta without prior; NaN if the window is rank deficient or the fit failed.
   virtual Eigen::VectorXd unregularised_theta(const Window& window) const = 0;
 
-  /// Solver and tolerance in words, for reports.
-  virtual std::string method() const;
-
   const Recording& recording() const { return recording_; }
   const FitOptions& options() const { return options_; }
   const GlobalModel& global() const { return global_; }
@@ -39,9 +35,8 @@ class WindowFitter {
 
   /// robust_scale of a run's least-squares residuals; NaN if the run is too short.
   virtual Eigen::VectorXd scale_of(const Trajectory& run) const = 0;
-  /// sigma as the options require. It is the scale of the window's residuals (`own`) under three conditions: the
-  /// options ask for it, the window has at least `enough` samples, and `own` is finite. Otherwise it is the sigma of
-  /// the run.
+  /// The sigma of the options if they state one. Otherwise the scale of the window's residuals (`own`), or the sigma of
+  /// the run if the window has not `enough` samples or `own` is not finite.
   Eigen::VectorXd window_sigma(const Window& window, bool enough, const std::function<Eigen::VectorXd()>& own) const;
 
  private:
@@ -92,7 +87,6 @@ class MotionWindows final : public WindowFitter {
 
   LocalModel fit(const Window& window, const ParameterPrior* prior) const override;
   Eigen::VectorXd unregularised_theta(const Window& window) const override;
-  std::string method() const override { return minimise_model_method; }
 
  private:
   Eigen::VectorXd scale_of(const Trajectory& run) const override;

@@ -40,7 +40,6 @@ WindowSummary summarize(const WindowFits& fits) {
     summary.significant(j) = static_cast<double>((values.array().abs() > significance).count()) / count;
   }
   summary.r_squared = row_medians(fits.r_squared);
-  summary.aic = median(defined(fits.aic));
   return summary;
 }
 

@@ -13,7 +13,6 @@ struct WindowSummary {
   Eigen::VectorXd standard_error;  ///< p, median
   Eigen::VectorXd significant;     ///< p, share of the windows in which |t value| > 2
   Eigen::VectorXd r_squared;       ///< n, median
-  double aic = 0.0;                ///< median
 };
 
 WindowSummary summarize(const WindowFits& fits);

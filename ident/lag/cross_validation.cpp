@@ -49,28 +49,24 @@ RunScore score(const Trajectory& run, const GlobalModel& global, const LinearStr
   return result;
 }
 
-/// Scores of all runs of one fold for every correction, ordered by run, then by correction.
+/// Scores of all runs of one fold for both corrections, ordered by run, then by correction.
 std::vector<std::vector<RunScore>> score_fold(const std::vector<LagSubject>& subjects, std::size_t fold,
                                               std::size_t folds, double rate_hz) {
   std::vector<LagSubject> kept, out;
   for (std::size_t i = 0; i < subjects.size(); ++i) (i % folds == fold ? out : kept).push_back(subjects[i]);
-  const PooledLags pooled = pool_lags(kept);
+  const PooledEstimate pooled = pool_lags(kept);
   const RunPair& any = subjects.front().run;
   const LinearStructure structure{any.states.values.rows(), any.inputs.values.rows(), true};
   std::vector<GlobalModel> globals;
   std::vector<std::vector<Trajectory>> joined(out.size());
   for (std::size_t c = 0; c < corrections; ++c) {
-    const auto correction = static_cast<LagCorrection>(c);
+    const double lag_s = corrected_lag_s(static_cast<LagCorrection>(c), pooled);
     Recording recording;
     recording.states.resize(static_cast<std::size_t>(structure.states));
     recording.inputs.resize(static_cast<std::size_t>(structure.inputs));
-    for (const LagSubject& s : kept)
-      recording.runs.push_back(
-          join_delayed(s.run, rate_hz, training_clock(correction, s.estimate, pooled, common_start_s(s.run))));
+    for (const LagSubject& s : kept) recording.runs.push_back(join_delayed(s.run, rate_hz, lag_s));
     globals.push_back(fit_global(recording, structure));
-    for (std::size_t r = 0; r < out.size(); ++r)
-      joined[r].push_back(
-          join_delayed(out[r].run, rate_hz, held_out_clock(correction, pooled, common_start_s(out[r].run))));
+    for (std::size_t r = 0; r < out.size(); ++r) joined[r].push_back(join_delayed(out[r].run, rate_hz, lag_s));
   }
   std::vector<std::vector<RunScore>> scores(out.size());
   for (std::size_t r = 0; r < out.size(); ++r) {
@@ -111,56 +107,27 @@ LagScore summarise(LagCorrection correction, const std::vector<std::vector<RunSc
 
 }  // namespace
 
-PooledLags pool_lags(const std::vector<LagSubject>& subjects) {
-  std::vector<double> lag, lag_error, start, start_error, drift, drift_error;
+PooledEstimate pool_lags(const std::vector<LagSubject>& subjects) {
+  std::vector<double> lag_s, error_s;
   for (const LagSubject& s : subjects) {
-    const RunLag& e = s.estimate;
-    if (e.status == LagStatus::converged) {
-      lag.push_back(e.lag_s);
-      lag_error.push_back(e.lag_standard_error_s);
-    }
-    if (e.drift_status != LagStatus::converged || !std::isfinite(e.clock_drift_standard_error)) continue;
-    // The lag in the middle of a run and the drift are nearly uncorrelated, so their errors are combined as
-    // independent.
-    const double before_s = e.applied_reference_s - common_start_s(s.run);
-    start.push_back(e.drifting_lag_s - e.clock_drift * before_s);
-    start_error.push_back(std::hypot(e.drifting_lag_standard_error_s, e.clock_drift_standard_error * before_s));
-    drift.push_back(e.clock_drift);
-    drift_error.push_back(e.clock_drift_standard_error);
+    if (s.estimate.status != LagStatus::converged) continue;
+    lag_s.push_back(s.estimate.lag_s);
+    error_s.push_back(s.estimate.lag_standard_error_s);
   }
-  const auto pool_of = [](const std::vector<double>& values, const std::vector<double>& errors) {
-    const auto count = static_cast<Index>(values.size());
-    return pool(Eigen::Map<const VectorXd>(values.data(), count), Eigen::Map<const VectorXd>(errors.data(), count));
-  };
-  return {pool_of(lag, lag_error), pool_of(start, start_error), pool_of(drift, drift_error)};
+  const auto count = static_cast<Index>(lag_s.size());
+  return pool(Eigen::Map<const VectorXd>(lag_s.data(), count), Eigen::Map<const VectorXd>(error_s.data(), count));
 }
 
-InputClock held_out_clock(LagCorrection correction, const PooledLags& pooled, double start_s) {
-  if (correction == LagCorrection::none) return {};
-  if (correction == LagCorrection::drift && pooled.drift.count > 0)
-    return {pooled.start_lag.mean, pooled.drift.mean, start_s};
-  return {pooled.lag.mean, 0.0, start_s};
+double corrected_lag_s(LagCorrection correction, const PooledEstimate& pooled) {
+  return correction == LagCorrection::none ? 0.0 : pooled.mean;
 }
 
-InputClock training_clock(LagCorrection correction, const RunLag& estimate, const PooledLags& pooled, double start_s) {
-  const InputClock common = held_out_clock(correction, pooled, start_s);
-  if (correction == LagCorrection::per_run && estimate.status == LagStatus::converged)
-    return {pooled.lag.shrunk(estimate.lag_s, estimate.lag_standard_error_s), 0.0, start_s};
-  if (correction == LagCorrection::drift && estimate.drift_status == LagStatus::converged && pooled.drift.count > 0) {
-    const double middle_s = estimate.applied_reference_s;
-    const double drift = pooled.drift.shrunk(estimate.clock_drift, estimate.clock_drift_standard_error);
-    return {estimate.drifting_lag_s, drift, middle_s};
-  }
-  return common;
-}
-
-Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& clock) {
+Trajectory join_delayed(const RunPair& run, double rate_hz, double lag_s) {
   Trajectory joined;
   joined.run = run.run;
   joined.role = Role::train;
-  joined.lag_s = clock.lag_s;
-  joined.time_s =
-      joint_times(run.states.time_s, run.inputs.time_s, {rate_hz, clock.lag_s, clock.drift, clock.reference_s});
+  joined.lag_s = lag_s;
+  joined.time_s = joint_times(run.states.time_s, run.inputs.time_s, {rate_hz, lag_s});
   if (joined.time_s.size() == 0) {
     joined.state.resize(run.states.values.rows(), 0);
     joined.input.resize(run.inputs.values.rows(), 0);
@@ -168,7 +135,7 @@ Trajectory join_delayed(const RunPair& run, double rate_hz, const InputClock& cl
   }
   joined.state = interpolate(run.states, joined.time_s);
   blank_gaps(run.states.time_s, joined.time_s, joined.state);
-  joined.input = hold_mid_transition(run.inputs, joined.time_s, clock);
+  joined.input = hold_mid_transition(run.inputs, joined.time_s, lag_s);
   const double longest = gap_periods * median_period_s(joined.time_s);
   for (Index k = 1; k < joined.samples(); ++k)
     if (joined.time_s(k) - joined.time_s(k - 1) > longest)

@@ -18,8 +18,6 @@ using Eigen::Index;
 constexpr Index coarse_samples = 4000;  // number of averages for a rough search of the minimum
 constexpr Index most_samples = 20000;   // number of averages for an exact search of the minimum
 constexpr Index coarse_lags = 51;
-constexpr Index coarse_drifts = 21;
-constexpr double fastest_drift = 0.05;  // [s/s]; real clocks drift more slowly
 constexpr int halvings = 12;
 constexpr int most_moves = 400;
 constexpr double least_evidence_nats = 5.0;  // smallest gain of the best lag over the median of all lags
@@ -29,16 +27,14 @@ constexpr double largest_error = 0.2;        // largest standard error, as a sha
 struct Search {
   double range_s;          // width of the range of lags
   double time_constant_s;  // largest time constant that is searched
-  double drift;            // largest drift that is searched
 };
 
 bool inside(const LagPoint& p, const Search& search) {
-  return std::abs(p.lag_s) <= search.range_s && std::abs(p.drift) <= search.drift && p.time_constant_s >= 0.0 &&
-         p.time_constant_s <= search.time_constant_s;
+  return std::abs(p.lag_s) <= search.range_s && p.time_constant_s >= 0.0 && p.time_constant_s <= search.time_constant_s;
 }
 
-double grid(Index i, Index count, double range) {
-  return range * (2.0 * static_cast<double>(i) / static_cast<double>(count - 1) - 1.0);
+double lag_at(Index i, double range_s) {
+  return range_s * (2.0 * static_cast<double>(i) / static_cast<double>(coarse_lags - 1) - 1.0);
 }
 
 /// 0, then doubling values from half a period to the largest.
@@ -63,7 +59,7 @@ GridResult search_lags(const LagObjective& objective, const Search& search) {
   std::vector<double> profile(coarse_lags, 0.0);
   for (const double tau : time_constants(search, objective.period_s()))
     for (Index i = 0; i < coarse_lags; ++i) {
-      const LagPoint point{grid(i, coarse_lags, search.range_s), 0.0, tau};
+      const LagPoint point{lag_at(i, search.range_s), tau};
       const double cost = objective.cost(point);
       profile[static_cast<std::size_t>(i)] = std::min(profile[static_cast<std::size_t>(i)], cost);
       if (cost < lowest) {
@@ -76,52 +72,34 @@ GridResult search_lags(const LagObjective& objective, const Search& search) {
   return result;
 }
 
-LagPoint search_drifts(const LagObjective& objective, const Search& search, const LagPoint& start) {
-  LagPoint best = start;
-  double lowest = objective.cost(start);
-  for (Index d = 0; d < coarse_drifts; ++d)
-    for (Index i = 0; i < coarse_lags; ++i) {
-      const LagPoint point{grid(i, coarse_lags, search.range_s), grid(d, coarse_drifts, search.drift),
-                           start.time_constant_s};
-      if (const double cost = objective.cost(point); cost < lowest) {
-        lowest = cost;
-        best = point;
-      }
-    }
-  return best;
-}
-
-LagPoint moved(LagPoint p, const std::array<double, 3>& direction, const LagPoint& step) {
-  p.lag_s += direction[0] * step.lag_s;
-  p.drift += direction[1] * step.drift;
-  p.time_constant_s = std::max(p.time_constant_s + direction[2] * step.lag_s, 0.0);
+LagPoint moved(LagPoint p, const std::array<double, 2>& direction, double step_s) {
+  p.lag_s += direction[0] * step_s;
+  p.time_constant_s = std::max(p.time_constant_s + direction[1] * step_s, 0.0);
   return p;
 }
 
 /// Pattern search (Hooke & Jeeves 1961) along the axes, and along the direction in which lag plus time constant is
 /// constant. The data determine this sum better than the lag or the time constant.
-LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point, bool with_drift) {
-  static constexpr std::array<std::array<double, 3>, 8> directions{
-      {{1, 0, 0}, {-1, 0, 0}, {0, 0, 1}, {0, 0, -1}, {1, 0, -1}, {-1, 0, 1}, {0, 1, 0}, {0, -1, 0}}};
-  LagPoint step{2.0 * search.range_s / (coarse_lags - 1), 2.0 * search.drift / (coarse_drifts - 1), 0.0};
+LagPoint refine(const LagObjective& objective, const Search& search, LagPoint point) {
+  static constexpr std::array<std::array<double, 2>, 6> directions{
+      {{1, 0}, {-1, 0}, {0, 1}, {0, -1}, {1, -1}, {-1, 1}}};
+  double step_s = 2.0 * search.range_s / (coarse_lags - 1);
   double lowest = objective.cost(point);
   for (int halved = 0, moves = 0; halved < halvings && moves < most_moves; ++moves) {
     LagPoint best = point;
-    for (std::size_t d = 0; d < (with_drift ? 8 : 6); ++d) {
-      const LagPoint candidate = moved(point, directions[d], step);
+    for (const auto& direction : directions) {
+      const LagPoint candidate = moved(point, direction, step_s);
       if (!inside(candidate, search)) continue;
       if (const double cost = objective.cost(candidate); cost < lowest) {
         lowest = cost;
         best = candidate;
       }
     }
-    const bool improved =
-        best.lag_s != point.lag_s || best.drift != point.drift || best.time_constant_s != point.time_constant_s;
+    const bool improved = best.lag_s != point.lag_s || best.time_constant_s != point.time_constant_s;
     point = best;
     if (improved) continue;
     ++halved;
-    step.lag_s *= 0.5;
-    step.drift *= 0.5;
+    step_s *= 0.5;
   }
   return point;
 }
@@ -141,29 +119,26 @@ double effective_samples(const LagObjective::Fit& fit) {
   return static_cast<double>(N) * (1.0 - rho) / (1.0 + rho);
 }
 
-LagFit finish(LagObjective& objective, const Search& search, const GridResult& coarse, LagPoint point,
-              bool with_drift) {
+LagFit finish(LagObjective& objective, const Search& search, const GridResult& coarse) {
+  LagPoint point = coarse.best;
   for (int pass = 0; pass < 3; ++pass) {
     if (pass > 0) objective.reweight(point);
-    point = refine(objective, search, point, with_drift);
+    point = refine(objective, search, point);
   }
   LagFit result;
-  result.clock = objective.clock(point);
+  result.lag_s = point.lag_s;
   result.time_constant_s = point.time_constant_s;
-  const LagVariances variances = lag_variances(objective, point, with_drift);
-  result.lag_standard_error_s = std::sqrt(variances.lag_s2);
-  if (with_drift) result.drift_standard_error = std::sqrt(variances.drift);
+  result.lag_standard_error_s = std::sqrt(lag_variance_s2(objective, point));
   const auto fit = objective.fit(point);
   const double cost = objective.cost(point);
   result.r_squared = -std::expm1(cost);
   const double states = fit ? static_cast<double>(fit->residuals.rows()) : 0.0;
   const double evidence = fit ? 0.5 * states * effective_samples(*fit) * (coarse.typical_cost - cost) : 0.0;
   const double edge = search.range_s * (1.0 - 1.0 / (coarse_lags - 1));
-  const double drift_edge = search.drift * (1.0 - 1.0 / (coarse_drifts - 1));
   if (!(evidence >= least_evidence_nats) || !(result.r_squared >= least_r_squared) ||
       !(result.lag_standard_error_s <= largest_error * search.range_s))
     result.status = LagStatus::not_excited;
-  else if (std::abs(point.lag_s) >= edge || (with_drift && std::abs(point.drift) >= drift_edge))
+  else if (std::abs(point.lag_s) >= edge)
     result.status = LagStatus::at_edge;
   else
     result.status = LagStatus::converged;
@@ -172,24 +147,19 @@ LagFit finish(LagObjective& objective, const Search& search, const GridResult& c
 
 }  // namespace
 
-LagEstimate estimate_lag(const Stream& states, const Stream& inputs, const LagOptions& options) {
-  LagEstimate estimate;
-  estimate.constant.status = estimate.drifting.status = LagStatus::not_excited;
+LagFit estimate_lag(const Stream& states, const Stream& inputs, const LagOptions& options) {
+  LagFit unknown;
+  unknown.status = LagStatus::not_excited;
   const Stream y = without_missing(states), u = with_last_known(inputs);
   constexpr Index least_samples = 10;
-  if (u.values.rows() == 0 || y.time_s.size() < least_samples || u.time_s.size() < least_samples) return estimate;
+  if (u.values.rows() == 0 || y.time_s.size() < least_samples || u.time_s.size() < least_samples) return unknown;
   const LagObjective coarse(y, u, coarse_samples);
   LagObjective fine(y, u, most_samples);
   Search search;
   search.range_s = std::min(options.range_s, 0.25 * fine.span_s());
   search.time_constant_s = search.range_s;
-  search.drift = fine.span_s() > 0.0 ? std::min(search.range_s / fine.span_s(), fastest_drift) : 0.0;
-  if (!(search.range_s > 0.0) || fine.samples() < least_samples) return estimate;
-  const GridResult found = search_lags(coarse, search);
-  estimate.constant = finish(fine, search, found, found.best, false);
-  const LagPoint start{estimate.constant.clock.lag_s, 0.0, estimate.constant.time_constant_s};
-  estimate.drifting = finish(fine, search, found, search_drifts(coarse, search, start), true);
-  return estimate;
+  if (!(search.range_s > 0.0) || fine.samples() < least_samples) return unknown;
+  return finish(fine, search, search_lags(coarse, search));
 }
 
 }  // namespace modebank

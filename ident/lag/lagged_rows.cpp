@@ -25,7 +25,7 @@ LinearStructure widest_of(const Recording& recording, const StructureRanges& ran
   widest.input_lags =
       std::min(ranges.input_lags.high + ranges.input_delay.high, std::max(Index{1}, ranges.memory + 1)) -
       ranges.input_delay.low;
-  widest.input_delay = ranges.input_delay.low;
+  widest.input_delay = ranges.newest;
   return widest;
 }
 
@@ -108,7 +108,7 @@ std::vector<Index> LaggedRows::columns(const LinearStructure& structure) const {
   const auto inputs_from = chosen.begin() + structure.dimension();
   std::iota(chosen.begin(), inputs_from, Index{0});
   std::iota(inputs_from, inputs_from + structure.acting_inputs(),
-            ranges.state_lags.high * states + (structure.input_delay - ranges.input_delay.low) * inputs);
+            ranges.state_lags.high * states + (structure.input_delay.latest() - ranges.input_delay.low) * inputs);
   if (structure.intercept) chosen.back() = X.cols() - 1;
   return chosen;
 }

@@ -19,6 +19,7 @@ struct LagRange {
 struct StructureRanges {
   LagRange state_lags, input_lags, input_delay;
   Index memory = 1000;
+  InputDelays newest = 1;  ///< ages of the newest inputs of the rows; the latest is input_delay.low
   bool holds(Index state, Index input, Index delay) const {
     return state_lags.holds(state) && input_lags.holds(input) && input_delay.holds(delay) && state <= memory &&
            input + delay <= memory + 1;

@@ -56,16 +56,11 @@ Stream with_last_known(const Stream& stream) {
 LagObjective::LagObjective(const Stream& states, const Stream& inputs, Index most_samples) : inputs_(inputs) {
   const double first = std::max(states.time_s(0), inputs.time_s(0));
   const double last = std::min(states.time_s(states.time_s.size() - 1), inputs.time_s(inputs.time_s.size() - 1));
-  middle_s_ = 0.5 * (first + last);
   period_s_ = std::max({median_period_s(states.time_s), median_period_s(inputs.time_s),
                         (last - first) / static_cast<double>(most_samples)});
   centres_s_ = averaging_times(states.time_s, first, last, period_s_);
   states_ = AveragedStream::linear(states).mean(centres_s_, period_s_);
   weights_ = VectorXd::Ones(centres_s_.size());
-}
-
-VectorXd LagObjective::delayed(const LagPoint& point) const {
-  return (1.0 - point.drift) * centres_s_.array() - (point.lag_s - point.drift * middle_s_);
 }
 
 const AveragedStream& LagObjective::response(double time_constant_s) const {
@@ -76,7 +71,7 @@ const AveragedStream& LagObjective::response(double time_constant_s) const {
 
 std::optional<LagObjective::Fit> LagObjective::fit(const LagPoint& point) const {
   const AveragedStream& input = response(point.time_constant_s);
-  const VectorXd times = delayed(point);
+  const VectorXd times = centres_s_.array() - point.lag_s;
   const double half = 0.5 * period_s_, slack = 1e-9 * period_s_;
   const double* const begin = times.data();
   const double* const from = std::lower_bound(begin, begin + times.size(), input.first_s() + half - slack);
@@ -118,7 +113,8 @@ void LagObjective::reweight(const LagPoint& point) {
 }
 
 MatrixXd LagObjective::inputs_at(const LagPoint& point, const Fit& fit) const {
-  return response(point.time_constant_s).mean(delayed(point).segment(fit.first, fit.samples), period_s_);
+  const VectorXd times = centres_s_.segment(fit.first, fit.samples).array() - point.lag_s;
+  return response(point.time_constant_s).mean(times, period_s_);
 }
 
 }  // namespace modebank

@@ -4,14 +4,12 @@
 #include <optional>
 
 #include "ident/data/averaged_stream.hpp"
-#include "ident/data/input_clock.hpp"
 
 namespace modebank {
 
-/// The values that are searched: lag at the middle of the run, drift, and time constant of the response.
+/// The values that are searched: lag, and time constant of the response.
 struct LagPoint {
   double lag_s = 0.0;
-  double drift = 0.0;
   double time_constant_s = 0.0;
 };
 
@@ -27,10 +25,8 @@ class LagObjective {
   LagObjective(const Stream& states, const Stream& inputs, Eigen::Index most_samples);
 
   double period_s() const { return period_s_; }  ///< width and spacing of the averaging intervals
-  double middle_s() const { return middle_s_; }
   double span_s() const { return centres_s_.size() > 0 ? centres_s_(centres_s_.size() - 1) - centres_s_(0) : 0.0; }
   Eigen::Index samples() const { return centres_s_.size(); }
-  InputClock clock(const LagPoint& point) const { return {point.lag_s, point.drift, middle_s_}; }
 
   /// Mean over the states of log(1 - R^2). 0 if the inputs explain nothing, or if fewer than half of the samples have
   /// an input.
@@ -51,11 +47,10 @@ class LagObjective {
   Eigen::MatrixXd inputs_at(const LagPoint& point, const Fit& fit) const;
 
  private:
-  Eigen::VectorXd delayed(const LagPoint& point) const;
   const AveragedStream& response(double time_constant_s) const;
 
   Stream inputs_;
-  double period_s_ = 0.0, middle_s_ = 0.0;
+  double period_s_ = 0.0;
   Eigen::VectorXd centres_s_;  // N
   Eigen::MatrixXd states_;     // averaged states, n x N
   Eigen::VectorXd weights_;    // N

@@ -7,12 +7,6 @@
 
 namespace modebank {
 
-double PooledEstimate::shrunk(double estimate, double error) const {
-  const double between = between_sd * between_sd, within = error * error;
-  if (within == 0.0) return estimate;
-  return mean + between / (between + within) * (estimate - mean);
-}
-
 PooledEstimate pool(const Eigen::VectorXd& estimates, const Eigen::VectorXd& errors) {
   PooledEstimate pooled;
   pooled.count = estimates.size();

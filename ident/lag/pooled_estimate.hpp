@@ -10,10 +10,6 @@ struct PooledEstimate {
   double standard_error = 0.0;  ///< standard error of the mean; NaN without estimates
   double between_sd = 0.0;      ///< standard deviation of the true values between runs
   Eigen::Index count = 0;       ///< number of pooled estimates
-
-  /// Empirical Bayes estimate of one run's true value: the run's estimate, shrunk towards the mean. The larger the
-  /// error of the estimate, relative to the standard deviation between runs, the stronger the shrinkage.
-  double shrunk(double estimate, double error) const;
 };
 
 /// Random-effects mean by the moment estimator of DerSimonian & Laird (1986), with weights 1 / (error^2 + between^2).

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "modebank/ident/input_delays.hpp"
+
 namespace modebank {
 
 /// Largest number of lags that a search tries first.
@@ -29,7 +31,7 @@ struct SearchedLags {
 struct StructureScore {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
-  std::ptrdiff_t input_delay = 1;
+  std::ptrdiff_t input_delay = 1;    ///< the latest of all inputs
   double log_score = 0.0;            ///< log score of all states together [nats/sample]
   double loss = 0.0;                 ///< loss relative to the best structure of the table [nats/sample]
   double loss_standard_error = 0.0;  ///< standard error of the loss, over runs or stretches [nats/sample]
@@ -46,6 +48,8 @@ struct StructureScore {
   /// [nats/sample]. NaN if it was not computed.
   double modes_score = std::numeric_limits<double>::quiet_NaN();
   double one_motion_score = std::numeric_limits<double>::quiet_NaN();
+  std::ptrdiff_t noise_lags = 0;  ///< lags of C of an ARMAX; 0 for an ARX
+  bool differences = false;       ///< whether the model is one of differences between samples
 };
 
 /// The lags and delay of windows, mixture and bank, the lags of other stages (in the table), and the evidence for the
@@ -53,22 +57,15 @@ struct StructureScore {
 struct FoundStructure {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
-  std::ptrdiff_t input_delay = 1;
-  std::ptrdiff_t samples = 0;     ///< number of samples that every structure predicted
-  std::ptrdiff_t parts = 0;       ///< number of runs or stretches over which standard errors are computed
-  bool by_runs = false;           ///< true: the parts are whole runs; false: stretches of runs
-  std::ptrdiff_t structures = 0;  ///< number of structures compared by least squares
-
-  /// Largest |t| of past innovations in a regression of the inputs on their own lags. It is large if the inputs react
-  /// to the states. NaN without inputs or with too few samples.
-  double feedback_t = 0.0;
-  double same_sample_t = 0.0;               ///< largest |t| of the innovation of the same sample as the input
+  InputDelays input_delay = 1;
+  std::ptrdiff_t samples = 0;               ///< number of samples that every structure predicted
+  std::ptrdiff_t parts = 0;                 ///< number of runs or stretches over which standard errors are computed
+  bool by_runs = false;                     ///< true: the parts are whole runs; false: stretches of runs
+  std::ptrdiff_t structures = 0;            ///< number of structures compared by least squares
+  std::ptrdiff_t noise_lags = 0;            ///< of the single linear model; 0 for an ARX
+  bool differences = false;                 ///< whether that model is one of differences
   std::string remark = {};                  ///< reason why the search did not use its full range; empty if it did
   std::vector<StructureScore> scores = {};  ///< scores of the finalists, in decreasing order
-
-  /// If |t| of past innovations is above this limit, the inputs are reported to react to the states.
-  static constexpr double feedback_limit = 5.0;
-  bool feedback() const { return feedback_t > feedback_limit; }
 };
 
 }  // namespace modebank

@@ -10,7 +10,6 @@
 #include <utility>
 #include <vector>
 
-#include "ident/lag/feedback.hpp"
 #include "ident/lag/lagged_rows.hpp"
 #include "ident/lag/structure_choice.hpp"
 #include "ident/lag/structure_scorer.hpp"
@@ -25,6 +24,11 @@ constexpr Index fewest_rows = 20;
 constexpr int most_rounds = 4;  // largest number of rounds of one climb
 constexpr std::size_t finalists = 10;
 
+/// One delay holds for all inputs, so none may need a larger one.
+Index least_of_all(const std::vector<Index>& least) {
+  return least.empty() ? 0 : *std::max_element(least.begin(), least.end());
+}
+
 /// The ranges of the searched numbers, up to `most`.
 StructureRanges ranges_up_to(const Recording& recording, const FitOptions& window, const SearchedLags& searched,
                              const Lags& most) {
@@ -35,7 +39,9 @@ StructureRanges ranges_up_to(const Recording& recording, const FitOptions& windo
   StructureRanges ranges{
       range(searched.state, 1, most[0], window.state_lags),
       range(searched.input && acted_on, 1, most[1], searched.input || !acted_on ? 1 : window.input_lags),
-      range(searched.delay && acted_on, 0, most[2], searched.delay || !acted_on ? 1 : window.input_delay)};
+      range(searched.delay && acted_on, least_of_all(least_delays(recording)), most[2],
+            searched.delay || !acted_on ? 1 : window.input_delay.latest())};
+  ranges.newest = window.input_delay.with_latest(ranges.input_delay.low);
   if (searched.most_samples == 0) return ranges;
   // The configured lags may be too many for the start of a free run; that configuration is rejected elsewhere.
   const Index stated = std::max(ranges.state_lags.low, ranges.input_lags.low + ranges.input_delay.low - 1);
@@ -175,7 +181,8 @@ FoundStructure settle(const StructureClimb& search, const FitOptions& window) {
     if (late.empty() || gains_enough(others, polished, weight)) polished = std::move(others);
   }
   const Lags chosen = smallest_as_good(polished, size, weight);
-  FoundStructure found{chosen[0], chosen[1], chosen[2], search.rows().count(), search.rows().parts};
+  FoundStructure found{chosen[0], chosen[1], window.input_delay.with_latest(chosen[2]), search.rows().count(),
+                       search.rows().parts};
   found.by_runs = search.rows().by_runs;
   found.structures = static_cast<std::ptrdiff_t>(search.seen().size());
   found.scores = score_table(polished, chosen, weight);
@@ -184,8 +191,9 @@ FoundStructure settle(const StructureClimb& search, const FitOptions& window) {
 
 /// The structure of `window`, with the smallest value of each searched number.
 FoundStructure nothing_found(const StructureRanges& ranges, const std::string& remark) {
-  FoundStructure found{ranges.state_lags.low, ranges.input_lags.low, std::max(Index{1}, ranges.input_delay.low)};
-  if (!ranges.input_delay.holds(found.input_delay)) found.input_delay = ranges.input_delay.low;
+  const Index later = std::max(Index{1}, ranges.input_delay.low);
+  FoundStructure found{ranges.state_lags.low, ranges.input_lags.low,
+                       ranges.input_delay.holds(later) ? ranges.newest.with_latest(later) : ranges.newest};
   found.remark = remark;
   return found;
 }
@@ -198,6 +206,21 @@ std::string cut_remark(const Lags& most) {
 
 }  // namespace
 
+std::vector<Index> least_delays(const Recording& recording) {
+  std::vector<Index> least;
+  for (Index i = 0; i < recording.input_count(); ++i) {
+    Index moving = 0, repeated = 0;
+    for (const Trajectory& run : recording.runs)
+      for (Index k = 1; k < run.samples() && run.role == Role::train; ++k) {
+        if (run.states().col(k) == run.states().col(k - 1)) continue;
+        ++moving;
+        repeated += run.inputs()(i, k) == run.inputs()(i, k - 1);
+      }
+    least.push_back(2 * repeated > moving ? 0 : 1);
+  }
+  return least;
+}
+
 FoundStructure find_structure(const Recording& recording, const FitOptions& window, const SearchedLags& searched) {
   const auto rows_up_to = [&](const Lags& most) {
     return make_lagged_rows(recording, ranges_up_to(recording, window, searched, most), window.intercept);
@@ -208,7 +231,6 @@ FoundStructure find_structure(const Recording& recording, const FitOptions& wind
     for (Index& end : most) end = end > 6 ? end - 2 : end - 1;
     rows = rows_up_to(most);
   }
-  const InputFeedback feedback = input_feedback(recording);
   if (rows.count() < fewest_rows)
     return nothing_found(rows.ranges, "no search: only " + std::to_string(rows.count()) +
                                           " transitions of the training runs are complete");
@@ -228,8 +250,6 @@ FoundStructure find_structure(const Recording& recording, const FitOptions& wind
     explore(*search, &best);
   }
   FoundStructure found = settle(*search, window);
-  found.feedback_t = feedback.past_t;
-  found.same_sample_t = feedback.same_sample_t;
   found.remark = remark;
   return found;
 }

@@ -71,6 +71,18 @@ std::vector<StateTerms> state_terms(const LagObjective::Fit& fit, const std::vec
   return terms;
 }
 
+/// Long-run covariance of the scores (q x N): their autocovariances, summed over lags with Bartlett weights (Newey &
+/// West 1987). Bandwidth by Andrews (1991), eq. 6.2 and 6.4, for first-order autoregressions.
+MatrixXd long_run_sum(const MatrixXd& scores) {
+  const Index N = scores.cols(), width = N > 1 ? bandwidth(scores) : 0;
+  MatrixXd sum = scores * scores.transpose();
+  for (Index lag = 1; lag <= width; ++lag) {
+    const MatrixXd part = scores.rightCols(N - lag) * scores.leftCols(N - lag).transpose();
+    sum += (1.0 - static_cast<double>(lag) / static_cast<double>(width + 1)) * (part + part.transpose());
+  }
+  return sum;
+}
+
 /// H^-1 S H^-1, with residuals scaled up according to their leverage (HC3). The scaling is needed because a single ramp
 /// of the inputs can contain all of the information. Empty if the information H is singular.
 MatrixXd sandwich(const LagObjective::Fit& fit, const std::vector<MatrixXd>& slopes) {
@@ -94,43 +106,22 @@ MatrixXd sandwich(const LagObjective::Fit& fit, const std::vector<MatrixXd>& slo
 
 }  // namespace
 
-MatrixXd long_run_sum(const MatrixXd& scores) {
-  const Index N = scores.cols(), width = N > 1 ? bandwidth(scores) : 0;
-  MatrixXd sum = scores * scores.transpose();
-  for (Index lag = 1; lag <= width; ++lag) {
-    const MatrixXd part = scores.rightCols(N - lag) * scores.leftCols(N - lag).transpose();
-    sum += (1.0 - static_cast<double>(lag) / static_cast<double>(width + 1)) * (part + part.transpose());
-  }
-  return sum;
-}
-
-LagVariances lag_variances(const LagObjective& objective, const LagPoint& point, bool with_drift) {
-  LagVariances variances{not_a_number, not_a_number, not_a_number};
+double lag_variance_s2(const LagObjective& objective, const LagPoint& point) {
   const auto fit = objective.fit(point);
-  if (!fit || !(objective.span_s() > 0.0)) return variances;
-  const double step_s = 0.5 * objective.period_s(), drift_step = step_s / objective.span_s();
+  if (!fit || !(objective.span_s() > 0.0)) return not_a_number;
+  const double step_s = 0.5 * objective.period_s();
   std::vector<MatrixXd> slopes;
   LagPoint low = point, high = point;
   low.lag_s -= step_s, high.lag_s += step_s;
   slopes.push_back(slope(objective, *fit, low, high, 2.0 * step_s));
-  if (with_drift) {
-    low = high = point;
-    low.drift -= drift_step, high.drift += drift_step;
-    slopes.push_back(slope(objective, *fit, low, high, 2.0 * drift_step));
-  }
-  const bool with_time_constant = point.time_constant_s > 0.0;
-  if (with_time_constant) {
+  if (point.time_constant_s > 0.0) {  // else it is at its bound, and has no error
     low = high = point;
     const double tau_step_s = std::min(step_s, 0.5 * point.time_constant_s);
     low.time_constant_s -= tau_step_s, high.time_constant_s += tau_step_s;
     slopes.push_back(slope(objective, *fit, low, high, 2.0 * tau_step_s));
   }
   const MatrixXd covariance = sandwich(*fit, slopes);
-  if (covariance.size() == 0) return variances;
-  variances.lag_s2 = covariance(0, 0);
-  variances.drift = with_drift ? covariance(1, 1) : 0.0;
-  variances.time_constant_s2 = with_time_constant ? covariance(covariance.rows() - 1, covariance.cols() - 1) : 0.0;
-  return variances;
+  return covariance.size() == 0 ? not_a_number : covariance(0, 0);
 }
 
 }  // namespace modebank

@@ -29,9 +29,9 @@ std::vector<std::string> LinearStructure::parameter_names() const {
     for (Eigen::Index lag = 1; lag <= state_lags; ++lag)
       for (Eigen::Index j = 1; j <= states; ++j)
         names.push_back((states == 1 ? "A" : "A" + row + std::to_string(j)) + lag_suffix(*this, lag));
-    for (Eigen::Index lag = input_delay; lag < input_delay + input_lags; ++lag)
-      for (Eigen::Index j = 1; j <= inputs; ++j)
-        names.push_back("B" + row + std::to_string(j) + lag_suffix(*this, lag));
+    for (Eigen::Index lag = 0; lag < input_lags; ++lag)
+      for (Eigen::Index j = 0; j < inputs; ++j)
+        names.push_back("B" + row + std::to_string(j + 1) + lag_suffix(*this, input_delay[j] + lag));
     if (intercept) names.push_back("c" + row);
   }
   return names;

@@ -5,22 +5,24 @@
 #include <string>
 #include <vector>
 
+#include "modebank/ident/input_delays.hpp"
+
 namespace modebank {
 
 /// Structure of the linear increment model x[k+1] = x[k] + A x[k] + B u[k] (+ c) + w[k] (Salvi et al. 2025, eq. 1),
 /// extended to lags: a VARX model in increment form (Ljung 1999, section 4.2):
-///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-input_delay-j] (+ c)
+///   x[k+1] = x[k] + sum_{i=1..state_lags} A_i x[k+1-i] + sum_{j=0..input_lags-1} B_j u[k+1-d-j] (+ c)
 ///          + w[k]. theta is the row-major vec of [A_1 A_2 ... B_0 B_1 ... (c)]: row i predicts the increment of state
 ///          i. In state space the lagged samples are further states: z[k] = [x[k]; x[k-1]; ...] has dimension n =
-///          states * state_lags. The inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Fits, filters
-///          and simulation all use the equation of this header.
+///          states * state_lags. The inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Each input
+///          has its own delay d. Fits, filters and simulation all use the equation of this header.
 struct LinearStructure {
-  Eigen::Index states = 1;       ///< measured states
-  Eigen::Index inputs = 0;       ///< input channels
-  bool intercept = false;        ///< whether the constant c is estimated
-  Eigen::Index state_lags = 1;   ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
-  Eigen::Index input_lags = 1;   ///< number of input samples that act on one transition; at least 1
-  Eigen::Index input_delay = 1;  ///< number of samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
+  Eigen::Index states = 1;      ///< measured states
+  Eigen::Index inputs = 0;      ///< input channels
+  bool intercept = false;       ///< whether the constant c is estimated
+  Eigen::Index state_lags = 1;  ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
+  Eigen::Index input_lags = 1;  ///< number of input samples that act on one transition; at least 1
+  InputDelays input_delay = 1;  ///< number of samples from each input to its first effect
 
   Eigen::Index dimension() const { return states * state_lags; }                                   ///< n, size of z
   Eigen::Index acting_inputs() const { return inputs * input_lags; }                               ///< m, size of v
@@ -33,7 +35,7 @@ struct LinearStructure {
   LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
   /// First transition of a run whose regressors all lie inside the run.
   Eigen::Index first_transition() const {
-    return std::max({Eigen::Index{0}, state_lags - 1, input_delay + input_lags - 2});
+    return std::max<Eigen::Index>({0, state_lags - 1, input_delay.latest() + input_lags - 2});
   }
   /// "A", "B1", "B2", "c" for one state; "A11", "A12", "B11", ..., "c1" for several. With lags a suffix gives the
   /// number of samples before the predicted one: "A_lag1", "A_lag2", "B1_lag0".

@@ -29,7 +29,6 @@ void WindowFits::resize(Index windows_count) {
   inlier_fraction.resize(windows_count);
   status.resize(windows_count);
   r_squared.resize(structure.states, windows_count);
-  aic.resize(windows_count);
   transitions.resize(windows_count);
   weighed_information.resize(structure.states, windows_count);
 }
@@ -47,7 +46,6 @@ void WindowFits::set(Index i, const LocalModel& fit) {
     r_squared.col(i) = fit.r_squared;
   else
     r_squared.col(i).setConstant(not_a_number);
-  aic(i) = fit.aic;
   transitions(i) = static_cast<int>(fit.transitions);
   if (fit.weighed_information.size() > 0)
     weighed_information.col(i) = fit.weighed_information;
@@ -67,7 +65,6 @@ LocalModel WindowFits::at(Index i) const {
   fit.inlier_fraction = inlier_fraction(i);
   fit.status = static_cast<FitStatus>(status(i));
   if (r_squared.cols() > 0) fit.r_squared = r_squared.col(i);
-  fit.aic = aic.size() > 0 ? aic(i) : not_a_number;
   fit.transitions = transitions.size() > 0 ? transitions(i) : length;
   if (weighed_information.cols() > 0) fit.weighed_information = weighed_information.col(i);
   return fit;

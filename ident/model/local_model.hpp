@@ -8,7 +8,6 @@
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
 #include "modebank/ident/options.hpp"
-#include "modebank/ident/window_audit.hpp"
 
 namespace modebank {
 
@@ -23,13 +22,11 @@ struct LocalModel {
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
   Eigen::VectorXd r_squared;  ///< n; defined in ident/fit/describe.hpp; empty if it was not computed
-  double aic = 0.0;           ///< Akaike's criterion [nats], see ident/fit/describe.hpp
   Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
 
   /// n, information of the data (curvature of the loss over sigma^2), in units of the information in `covariance`. With
   /// this number the prior can be removed from the estimate. NaN without a prior and for a sandwich covariance.
   Eigen::VectorXd weighed_information;
-  bool solved = false;  ///< whether the search reached its tolerance; set even if `status` is rank_deficient
 };
 
 /// The global model: ordinary least squares over all training transitions.
@@ -61,12 +58,10 @@ struct WindowFits {
   Eigen::VectorXd inlier_fraction;      ///< M
   Eigen::VectorXi status;               ///< M, FitStatus
   Eigen::MatrixXd r_squared;            ///< n x M
-  Eigen::VectorXd aic;                  ///< M
   Eigen::VectorXi transitions;          ///< M
   Eigen::MatrixXd weighed_information;  ///< n x M; defined in LocalModel; empty if unknown (older archives)
   Eigen::VectorXd prior_sd;             ///< p, standard deviations of the prior; empty without a prior
   GlobalModel global;
-  WindowAudit audit;
   std::vector<char> by_batch;  ///< M, 1 if the batch solver solved the window, else 0; not archived
 
   Index count() const { return static_cast<Index>(windows.size()); }

@@ -28,12 +28,14 @@ std::vector<std::string> regressor_labels(const LinearStructure& s, const std::v
                                           const std::vector<std::string>& inputs) {
   const std::vector<std::string> x = channel_names(states, s.states, 'x'), u = channel_names(inputs, s.inputs, 'u');
   std::vector<std::string> labels;
-  const auto add = [&](const std::vector<std::string>& names, Eigen::Index lag) {
-    for (const std::string& name : names)
-      labels.push_back(name + (s.lagged() ? " (lag " + std::to_string(lag) + ")" : ""));
+  const auto add = [&](const std::vector<std::string>& names, Eigen::Index lags, const InputDelays& first) {
+    for (Eigen::Index lag = 0; lag < lags; ++lag)
+      for (Eigen::Index j = 0; j < std::ssize(names); ++j)
+        labels.push_back(names[static_cast<std::size_t>(j)] +
+                         (s.lagged() ? " (lag " + std::to_string(first[j] + lag) + ")" : ""));
   };
-  for (Eigen::Index lag = 1; lag <= s.state_lags; ++lag) add(x, lag);
-  for (Eigen::Index lag = s.input_delay; lag < s.input_delay + s.input_lags; ++lag) add(u, lag);
+  add(x, s.state_lags, 1);
+  add(u, s.input_lags, s.input_delay);
   return labels;
 }
 

@@ -36,7 +36,7 @@ void fill_rows(const Trajectory& run, Index start, Index count, const LinearStru
       copy_signal(state, j, start - i, count, column(transitions.regressors, i * s.states + j));
   for (Index i = 0; i < s.input_lags; ++i)
     for (Index j = 0; j < s.inputs; ++j)
-      copy_signal(input, j, start + 1 - s.input_delay - i, count,
+      copy_signal(input, j, start + 1 - s.input_delay[j] - i, count,
                   column(transitions.regressors, s.dimension() + i * s.inputs + j));
   if (s.intercept) transitions.regressors.col(s.regressors() - 1).segment(first, count).setOnes();
   for (Index j = 0; j < s.states; ++j) {

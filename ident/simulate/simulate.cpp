@@ -1,7 +1,9 @@
 #include "ident/simulate/simulate.hpp"
 
 #include <algorithm>
+#include <boost/random/bernoulli_distribution.hpp>
 #include <boost/random/discrete_distribution.hpp>
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <string>
 #include <string_view>
@@ -9,7 +11,6 @@
 #include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/simulate/input_law.hpp"
-#include "ident/simulate/simulation_parts.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -19,6 +20,34 @@ namespace {
 constexpr double row_sum_tolerance = 1e-9;
 
 LinearStructure structure_of(const SimulationOptions& o) { return {o.states, o.inputs, o.intercept}; }
+
+void require_setting(bool ok, const std::string& message) {
+  if (!ok) throw ConfigurationError("simulation: " + message);
+}
+
+void require_nonnegative_setting(double value, const std::string& name) {
+  require_setting(value >= 0.0 && std::isfinite(value),
+                  name + " = " + std::to_string(value) + " is negative or not finite");
+}
+
+void require_fraction_setting(double value, const std::string& name) {
+  require_setting(value >= 0.0 && value <= 1.0, name + " = " + std::to_string(value) + " is outside 0..1");
+}
+
+void check_commands(const CommandOptions& o) {
+  require_setting(o.samples >= 2, "samples = " + std::to_string(o.samples) + " is below 2");
+  require_setting(o.hold_samples >= 1, "hold_samples = " + std::to_string(o.hold_samples) + " is below 1");
+  require_nonnegative_setting(o.input_amplitude, "input_amplitude");
+  require_nonnegative_setting(o.input_quantum, "input_quantum");
+  require_fraction_setting(o.standstill_fraction, "standstill_fraction");
+  require_fraction_setting(o.equal_fraction, "equal_fraction");
+  require_fraction_setting(o.standstill_fraction + o.equal_fraction, "standstill_fraction + equal_fraction");
+}
+
+void check_runs(Index runs, double dt_s) {
+  require_setting(runs >= 1, "runs = " + std::to_string(runs) + " is below 1");
+  require_setting(dt_s > 0.0 && std::isfinite(dt_s), "dt_s = " + std::to_string(dt_s) + " is not positive");
+}
 
 void check_modes(const SimulationOptions& o) {
   require_setting(!o.modes.empty(), "no mode is given");
@@ -92,6 +121,14 @@ Eigen::VectorXi draw_modes(const SimulationOptions& o, Index run, std::mt19937_6
   return modes;
 }
 
+/// Draws `size` values of N(0, sd^2).
+Eigen::VectorXd draw_noise(Index size, double sd, std::mt19937_64& generator) {
+  boost::random::normal_distribution<double> standard;
+  Eigen::VectorXd noise(size);
+  for (double& value : noise) value = sd * standard(generator);
+  return noise;
+}
+
 /// Simulates the states, which start at zero. The mode of sample k drives the transition to sample k + 1.
 Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& modes, const Eigen::MatrixXd& inputs,
                              std::mt19937_64& generator) {
@@ -107,6 +144,25 @@ Eigen::MatrixXd drive_states(const SimulationOptions& o, const Eigen::VectorXi& 
   return states;
 }
 
+/// Adds measurement noise to every sample (column), and outliers to some samples.
+void add_noise(Eigen::MatrixXd& samples, const SimulationOptions& o, std::mt19937_64& generator) {
+  boost::random::bernoulli_distribution<double> is_outlier(o.outlier_fraction);
+  for (Index k = 0; k < samples.cols(); ++k) {
+    samples.col(k) += draw_noise(samples.rows(), o.measurement_sd, generator);
+    const bool outlier = is_outlier(generator);
+    const Eigen::VectorXd error = draw_noise(samples.rows(), o.outlier_sd, generator);
+    if (outlier) samples.col(k) += error;
+  }
+}
+
+/// Run names "00", "01", ... All have the number of digits of the last run, at least two, so that names in byte order
+/// are in run order.
+std::string simulated_run_name(Index run, Index runs) {
+  const std::size_t width = std::max<std::size_t>(2, std::to_string(runs - 1).size());
+  const std::string digits = std::to_string(run);
+  return std::string(width - digits.size(), '0') + digits;
+}
+
 SimulatedRun simulate_run(const SimulationOptions& o, std::uint64_t seed, Index i) {
   // Each purpose has its own generator, so that changing the noise or the outliers does not change modes and inputs.
   const auto generator = [&](std::string_view use) { return make_generator(seed, use, static_cast<std::uint64_t>(i)); };
@@ -120,8 +176,7 @@ SimulatedRun simulate_run(const SimulationOptions& o, std::uint64_t seed, Index 
   run.measured.input = draw_inputs(o, input_generator);
   run.measured.truth = drive_states(o, run.mode, run.measured.input, process_generator);
   run.measured.state = run.measured.truth;
-  add_noise(run.measured.state, Eigen::VectorXd::Constant(o.states, o.measurement_sd),
-            {o.outlier_fraction, o.outlier_sd}, measurement_generator);
+  add_noise(run.measured.state, o, measurement_generator);
   return run;
 }
 

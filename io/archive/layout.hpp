@@ -38,23 +38,6 @@ inline Unit window_units(const WindowFits& fits, const Units& units) {
                                        : unit_of(fits.model_parameters);
 }
 
-/// - audit_checked: windows that Ceres solved again
-/// - audit_cost_difference: largest relative difference between the cost of a window and its cost by Ceres
-template <class Io, class A>
-void exchange_audit(Io& io, A& audit) {
-  io.optional_attribute("audit_batch_windows", audit.batch, rule::not_negative);
-  io.optional_attribute("audit_ceres_windows", audit.ceres, rule::not_negative);
-  io.optional_attribute("audit_batch_method", audit.batch_method);
-  io.optional_attribute("audit_ceres_method", audit.ceres_method);
-  io.optional_attribute("audit_checked", audit.checked, rule::not_negative);
-  io.optional_attribute("audit_cost_difference", audit.cost_difference);
-  io.optional_attribute("audit_gradient", audit.gradient);
-  io.optional_attribute("audit_ceres_gradient", audit.ceres_gradient);
-  io.optional_attribute("audit_parameter_difference", audit.parameter_difference);
-  io.optional_attribute("audit_replaced", audit.replaced, rule::not_negative);
-  io.optional_attribute("audit_lower", audit.lower, rule::not_negative);
-}
-
 /// /windows: one local model for each window.
 /// - length: transitions of a window
 /// - step: transitions from one window to the next
@@ -67,7 +50,6 @@ void exchange_audit(Io& io, A& audit) {
 /// - information: information of each parameter
 /// - inlier_fraction: share of transitions that the loss does not down-weight
 /// - status: 0: converged, 1: iteration limit, 2: rank deficient, 3: failed
-/// - aic: Akaike's criterion
 /// - transitions: number of transitions in the fit
 /// - weighed_information: information of the data, which weighed theta against the prior. The prior's share of
 ///   theta can be removed with it.
@@ -82,7 +64,6 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
   io.attribute("length", fits.length, rule::at_least_one);
   io.attribute("step", fits.step, rule::at_least_one);
   io.attribute("loss", fits.loss);
-  exchange_audit(io, fits.audit);
   io.through(
       fits.windows, [&](const auto& windows) { return store_windows(windows, runs); },
       [&](const StoredWindows& stored) { return restore_windows(stored, runs, fits.length); },
@@ -99,18 +80,13 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
   io.field("inlier_fraction", fits.inlier_fraction, {"M"}, {}, rule::share_or_missing);
   io.field("status", fits.status, {"M"}, {}, rule::between(0, static_cast<int>(FitStatus::failed)));
   io.optional_field("r_squared", fits.r_squared, {"M", "n"}, {}, rule::at_most_one);
-  io.optional_field("aic", fits.aic, {"M"}, {"nat"});
   io.optional_field("transitions", fits.transitions, {"M"}, {}, rule::between(0.0, static_cast<double>(fits.length)));
   io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
       "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters, rule::not_negative_or_missing);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
   io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters, rule::not_negative_or_missing);
-  if constexpr (Io::reads)
-    io.finish([&] {
-      restore_window_structure(fits, io.size("n"), io.size("p"));
-      check_audit(fits);
-    });
+  if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
   std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
   if constexpr (!Io::reads)
@@ -198,10 +174,10 @@ void exchange_archive(Io& io, A& archive) {
     exchange_recording(member, part, archive.labels, archive.step_scatter);
   });
   exchange_part(io, "lag", archive.lag, {}, [](auto& member, auto& part) { exchange_lag(member, part); });
-  exchange_part(io, "structure", archive.structure, {},
-                [](auto& member, auto& part) { exchange_structure(member, part); });
   const Recording none;
   const Recording& recording = archive.recording ? *archive.recording : none;
+  exchange_part(io, "structure", archive.structure, {},
+                [&](auto& member, auto& part) { exchange_found_structure(member, part, recording.input_count()); });
   const Units units(recording);
   Sizes channels;
   if (archive.recording) channels.set("n", recording.states.size());
@@ -224,7 +200,6 @@ void exchange_archive(Io& io, A& archive) {
     member.optional_attribute_texts("mode_names", archive.mode_names);
     if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
-    exchange_merging(member, archive.merging);
     exchange_left_out(member, archive.left_out, units.states());
   });
   exchange_part(io, "baseline", archive.baseline, {}, exchange_one);

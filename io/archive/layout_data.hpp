@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "io/archive/archive.hpp"
+#include "io/archive/bank/layout_bank.hpp"
 #include "io/archive/bank/open_archive.hpp"
 #include "io/archive/bank/units.hpp"
 #include "io/archive/groups/columns.hpp"
@@ -130,14 +131,11 @@ void exchange_pooled(Io& io, const std::string& name, P& pooled) {
 /// - scores: one row for each correction that was compared
 /// - runs: estimates of each run, and the lag that was applied to the run
 /// - gain: log score minus the log score without correction
-/// - match_s: delay with the best match, as the median over windows
 /// - applied_lag_s: lag that was applied
 template <class Io, class L>
 void exchange_lag(Io& io, L& lag) {
   io.attribute("correction", lag.correction);
   exchange_pooled(io, "lag_s", lag.lag);
-  exchange_pooled(io, "start_lag_s", lag.start_lag);
-  exchange_pooled(io, "clock_drift", lag.drift);
   io.table("scores", lag.scores, column("correction", &LagScore::correction),
            column("transitions", &LagScore::transitions).obeying(rule::not_negative),
            column("log_score", &LagScore::log_score, "nat"), amount_column("rmse", &LagScore::rmse),
@@ -148,28 +146,18 @@ void exchange_lag(Io& io, L& lag) {
            amount_column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
            column("time_constant_s", &RunLag::time_constant_s, "s"),
            column("r_squared", &RunLag::r_squared).obeying(rule::at_most_one),
-           column("drift_status", &RunLag::drift_status), column("drifting_lag_s", &RunLag::drifting_lag_s, "s"),
-           amount_column("drifting_lag_standard_error_s", &RunLag::drifting_lag_standard_error_s, "s"),
-           column("clock_drift", &RunLag::clock_drift),
-           amount_column("clock_drift_standard_error", &RunLag::clock_drift_standard_error),
-           column("match_s", &RunLag::match_s, "s"), column("match_least_s", &RunLag::match_least_s, "s"),
-           column("match_largest_s", &RunLag::match_largest_s, "s"),
-           column("match_windows", &RunLag::match_windows).obeying(rule::not_negative),
-           column("applied_lag_s", &RunLag::applied_lag_s, "s").obeying(rule::finite),
-           column("applied_clock_drift", &RunLag::applied_clock_drift).obeying(rule::finite),
-           column("applied_reference_s", &RunLag::applied_reference_s, "s"));
+           column("applied_lag_s", &RunLag::applied_lag_s, "s").obeying(rule::finite));
 }
 
 /// /structure: lags and delay that `window.model = auto` or lags of `auto` chose.
 /// - state_lags: state lags of windows and bank
 /// - input_lags: input lags of windows and bank
-/// - input_delay: input delay of windows and bank [samples]
 /// - samples: transitions that the comparison used
 /// - parts: number of training runs, or of stretches of these runs, that were held out in turn
 /// - by_runs: 1: parts are runs; 0: parts are stretches
 /// - structures: number of structures that were compared
-/// - feedback_t: largest |t| of past innovations, when inputs are regressed on their own lags and these innovations
-/// - same_sample_t: largest |t| of the same sample's innovation in that regression
+/// - noise_lags: lags of C of the single linear model, an ARMAX; 0: it is an ARX
+/// - differences: 1: that model is one of differences between samples
 /// - scores: one row for each structure that was compared
 /// - chosen: 1: windows and bank use this structure
 /// - linear: 1: this is the structure with one lag
@@ -179,16 +167,16 @@ void exchange_lag(Io& io, L& lag) {
 /// - modes_score: log score of a bank of modes; NaN: not computed
 /// - one_motion_score: log score of `one_motion`; NaN: not computed
 template <class Io, class F>
-void exchange_structure(Io& io, F& found) {
+void exchange_found_structure(Io& io, F& found, Eigen::Index inputs) {
   io.attribute("state_lags", found.state_lags, rule::lags);
   io.attribute("input_lags", found.input_lags, rule::lags);
-  io.attribute("input_delay", found.input_delay, rule::delay);
+  exchange_delays(io, found.input_delay, inputs);
   io.attribute("samples", found.samples, rule::not_negative);
   io.attribute("parts", found.parts, rule::not_negative);
   io.attribute("by_runs", found.by_runs);
   io.attribute("structures", found.structures, rule::not_negative);
-  io.attribute("feedback_t", found.feedback_t, rule::not_negative_or_missing);
-  io.attribute("same_sample_t", found.same_sample_t, rule::not_negative_or_missing);
+  io.attribute("noise_lags", found.noise_lags, rule::not_negative);
+  io.attribute("differences", found.differences);
   io.attribute("remark", found.remark);
   io.table("scores", found.scores, column("state_lags", &StructureScore::state_lags).obeying(rule::lags),
            column("input_lags", &StructureScore::input_lags).obeying(rule::lags),
@@ -200,7 +188,9 @@ void exchange_structure(Io& io, F& found) {
            column("drifting", &StructureScore::drifting),
            column("drifting_score", &StructureScore::drifting_score, "nat"),
            column("modes_score", &StructureScore::modes_score, "nat"),
-           column("one_motion_score", &StructureScore::one_motion_score, "nat"));
+           column("one_motion_score", &StructureScore::one_motion_score, "nat"),
+           column("noise_lags", &StructureScore::noise_lags).obeying(rule::not_negative),
+           column("differences", &StructureScore::differences));
 }
 
 }  // namespace modebank::layout

@@ -16,18 +16,6 @@
 /// count from 0.
 namespace modebank::layout {
 
-/// - merged: cost of the limit `bank.modes`
-template <class Io, class R>
-void exchange_merging(Io& io, R& rows) {
-  io.optional_table("merged", rows, column("role", &MergingCost::role),
-                    column("components", &MergingCost::components).obeying(rule::not_negative),
-                    column("modes_unlimited", &MergingCost::modes_unlimited).obeying(rule::not_negative),
-                    column("modes", &MergingCost::modes).obeying(rule::not_negative),
-                    column("samples", &MergingCost::samples).obeying(rule::not_negative),
-                    column("log_score_unlimited", &MergingCost::log_score_unlimited, "nat"),
-                    column("log_score", &MergingCost::log_score, "nat"), column("loss", &MergingCost::loss, "nat"));
-}
-
 /// - left_out: scores on training runs; each filter was learned without the run that it predicts
 /// - start: weight at the start of a run
 template <class Io, class R>
@@ -160,13 +148,15 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
 
 /// - horizon: scores of predictions this number of samples ahead, with `filter.horizon`
 /// - run: `*`: all runs of the role
+/// - coverage_95: share of the signals inside the central 95 % band, each by itself
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
   io.optional_table(
       "horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
       column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples").obeying(rule::at_least_one),
       column("samples", &HorizonRow::samples).obeying(rule::count_of("samples")),
-      column("log_score", &HorizonRow::log_score, "nat"), amount_column("rmse", &HorizonRow::rmse, joined(states)));
+      column("log_score", &HorizonRow::log_score, "nat"), amount_column("rmse", &HorizonRow::rmse, joined(states)),
+      later_column("coverage_95", &HorizonRow::coverage_95).obeying(rule::share_or_missing));
 }
 
 /// - combination: weights of the filters in the combined forecasts
@@ -178,7 +168,7 @@ void exchange_combination(Io& io, R& rows) {
   io.optional_table("combination", rows, column("role", &CombinationRow::role),
                     column("horizon", &CombinationRow::horizon, "samples").obeying(rule::not_negative),
                     column("filter", &CombinationRow::filter), share_column("weight", &CombinationRow::weight),
-                    later_column("start", &CombinationRow::start).obeying(rule::share_or_missing));
+                    column("start", &CombinationRow::start).obeying(rule::share_or_missing));
 }
 
 /// - free_run: scores of free runs, with `filter.simulate`
@@ -230,8 +220,7 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
       amount_column("nis_lower", &Row::nis_lower), amount_column("nis_upper", &Row::nis_upper),
       amount_column("nees_mean", &Row::nees_mean), amount_column("nees_lower", &Row::nees_lower),
       amount_column("nees_upper", &Row::nees_upper), amount_column("state_rmse", &Row::state_rmse, joined(states)),
-      share_column("whiteness_p", &Row::whiteness_p), share_column("spread_share", &Row::spread_share),
-      column("verdict", &Row::verdict), column("flags", &Row::flags),
+      share_column("whiteness_p", &Row::whiteness_p), column("verdict", &Row::verdict), column("flags", &Row::flags),
       later_column("autocorrelation", &Row::autocorrelation),
       later_column("autocorrelation_lag", &Row::autocorrelation_lag));
 }

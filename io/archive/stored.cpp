@@ -125,14 +125,6 @@ void restore_window_structure(WindowFits& fits, Index states, Index parameters) 
   if (fits.parameter_count() != parameters) parameters_do_not_fit(parameters, states);
 }
 
-void check_audit(const WindowFits& fits) {
-  const WindowAudit& audit = fits.audit;
-  const auto windows = std::ssize(fits.windows);
-  for (const auto count : {audit.batch, audit.ceres, audit.checked, audit.replaced, audit.lower})
-    if (count > windows)
-      throw DataError("the audit counts " + std::to_string(count) + " of " + std::to_string(windows) + " windows");
-}
-
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances) {
   const Index features = covariances.empty() ? 0 : covariances.front().rows();
   return side_by_side(

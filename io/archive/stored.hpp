@@ -53,8 +53,6 @@ std::vector<Window> restore_windows(const StoredWindows& stored, const std::vect
 /// Like restore_structure, but for windows. Their arrays have one entry per measured state. With a motion model, p is
 /// the number of its parameters.
 void restore_window_structure(WindowFits& fits, Index states, Index parameters);
-/// Throws if a number in the audit exceeds the number of windows.
-void check_audit(const WindowFits& fits);
 
 /// The covariances of the components, F*F x K.
 Eigen::MatrixXd store_covariances(const std::vector<Eigen::MatrixXd>& covariances);

@@ -241,8 +241,6 @@ std::vector<Table> parse_all(std::string_view file, std::string_view content, co
 
 }  // namespace
 
-std::vector<std::string> read_csv_header(const std::filesystem::path& path) { return read_csv_head(path, {}).names; }
-
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
                 const FormatOptions& options) {
   return std::move(parse_all(file, content, {request}, options).front());

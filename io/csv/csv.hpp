@@ -16,16 +16,12 @@ namespace modebank {
 /// before the header or after the last row.
 /// - Errors: malformed quotes, rows whose width differs from the header's, and empty lines between rows.
 
-/// Column names of the file. Reads the file only as far as needed. Throws ConfigurationError if the file cannot be read
-/// or has no header. Throws DataError if the header's quotes are malformed.
-std::vector<std::string> read_csv_header(const std::filesystem::path& path);
-
 /// Reads the requested columns of `content`. `file`: name for error messages. Throws the same exceptions as
 /// TableReader::read.
 Table parse_csv(std::string_view file, std::string_view content, const TableRequest& request,
                 const FormatOptions& options = {});
 
-/// Column names of a text, or of the beginning of a text. Throws the same exceptions as read_csv_header.
+/// Column names of a text, or of the beginning of a text. Throws the same exceptions as read_csv_head.
 TableInfo csv_columns(std::string_view file, std::string_view content, const FormatOptions& options);
 
 /// A text file as one table without a name.

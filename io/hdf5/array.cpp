@@ -151,7 +151,7 @@ Handle write_array(hid_t parent, Place place, const std::string& name, hid_t fil
     const Handle space = make_space(shape);
     Handle attribute(H5Acreate2(parent, name.c_str(), file_type, space.id(), H5P_DEFAULT, H5P_DEFAULT), H5Aclose,
                      "create " + what);
-    check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
+    if (element_count(shape) > 0) check(H5Awrite(attribute.id(), memory_type, data), "write " + what);
     return attribute;
   }
   Handle dataset = create_rows(parent, name, file_type, shape);

@@ -246,8 +246,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory,
   LeftOut left_out;
   for (std::size_t i = 0; i < streams.size(); ++i) {
     for (std::string& line : columns_without_value(streams[i], options)) data.notes.push_back(std::move(line));
-    const Trajectory run =
-        join_run(streams[i], options, sampling, data.lag ? data.lag->runs[i].applied() : InputClock{});
+    const Trajectory run = join_run(streams[i], options, sampling, data.lag ? data.lag->runs[i].applied_lag_s : 0.0);
     quanta.look_at(streams[i], run);
     std::vector<Trajectory> parts =
         without_missing_values(run, kept_samples(streams[i], run), options.missing, data.notes);

@@ -40,9 +40,8 @@ std::vector<Index> order_of(const VectorXd& time_s) {
   return order;
 }
 
-void check_samples(const RunStreams& run, Index samples, const DataOptions& options, const InputClock& clock) {
+void check_samples(const RunStreams& run, Index samples, double lag_s) {
   if (samples >= 2) return;
-  const double lag_s = options.lag_auto ? clock.lag_s : options.lag_s;
   const std::string lag = lag_s == 0.0 ? "" : fmt::format(", lag {} s", lag_s);
   throw DataError(fmt::format("run \"{}\" has {} sample{}, but needs at least two; states {} ({}), inputs {} ({}){}{}",
                               run.run, samples, samples == 1 ? "" : "s", span(run.states), run.states.file,
@@ -96,31 +95,28 @@ std::vector<bool> kept_samples(const RunStreams& run, const Trajectory& joined) 
 }
 
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
-                    const InputClock& clock) {
+                    double estimated_lag_s) {
   const Stream &states = run.states.stream, &inputs = run.inputs.stream;
-  const bool shifted = options.lag_auto && (clock.lag_s != 0.0 || clock.drift != 0.0);
-  const InputClock applied = options.lag_auto ? clock : InputClock{options.lag_s, 0.0, 0.0};
+  const double lag_s = options.lag_auto ? estimated_lag_s : options.lag_s;
   Trajectory joined;
   joined.run = run.run;
   joined.role = run.role;
-  joined.lag_s = applied.lag_s;
+  joined.lag_s = lag_s;
   joined.time_origin_ns = run.states.origin_ns;
   joined.file = run.inputs.file;
-  joined.time_s =
-      joint_times(states.time_s, inputs.time_s, {sampling.rate_hz, applied.lag_s, applied.drift, applied.reference_s});
+  joined.time_s = joint_times(states.time_s, inputs.time_s, {sampling.rate_hz, lag_s});
   const AveragedColumns& averaged = sampling.averaged;
   const double step_s = sampling.rate_hz > 0.0 ? 1.0 / sampling.rate_hz : 0.0;
   if (averaged.any() && joined.time_s.size() > 0)  // the first time is not the end of a whole step
     joined.time_s = joined.time_s.tail(joined.time_s.size() - 1).eval();
-  check_samples(run, joined.time_s.size(), options, clock);
+  check_samples(run, joined.time_s.size(), lag_s);
   joined.state = interpolate(states, joined.time_s);
   average_rows(states, averaged.states, joined.time_s, step_s, joined.state);
   blank_gaps(states.time_s, joined.time_s, joined.state);
   if (averaged.any()) blank_gaps(states.time_s, joined.time_s.array() - step_s, joined.state);
-  joined.input = shifted ? hold_mid_transition(inputs, joined.time_s, applied)
-                         : hold(inputs, joined.time_s.array() - applied.lag_s);
-  const VectorXd recorded_s =
-      joined.time_s.unaryExpr([&](double time_s) { return time_s - applied.at(time_s) - averaged.further_lag_s; });
+  joined.input = options.lag_auto && lag_s != 0.0 ? hold_mid_transition(inputs, joined.time_s, lag_s)
+                                                  : hold(inputs, joined.time_s.array() - lag_s);
+  const VectorXd recorded_s = joined.time_s.array() - lag_s - averaged.further_lag_s;
   average_rows(inputs, averaged.inputs, recorded_s, step_s, joined.input);
   joined.truth.resize(static_cast<Index>(run.truth.size()), run.truth.empty() ? 0 : joined.time_s.size());
   for (std::size_t i = 0; i < run.truth.size(); ++i) {

@@ -68,9 +68,10 @@ struct LogSampling;
 
 /// The run in the form that identification uses, sampled as `sampling` states. States are interpolated or averaged;
 /// inputs are held or averaged. Throws DataError if fewer than two samples remain.
-/// Inputs are delayed by the constant options.lag_s. With options.lag_auto they are delayed by `clock`, evaluated in
-/// the middle of each transition (hold_mid_transition). Samples whose delayed input is unknown are dropped.
+/// Inputs are delayed by the constant options.lag_s. With options.lag_auto they are delayed by
+/// `estimated_lag_s`, evaluated in the middle of each transition (hold_mid_transition). Samples whose delayed input is
+/// unknown are dropped.
 Trajectory join_run(const RunStreams& run, const DataOptions& options, const LogSampling& sampling,
-                    const InputClock& clock);
+                    double estimated_lag_s);
 
 }  // namespace modebank

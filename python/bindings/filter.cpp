@@ -181,8 +181,8 @@ void bind_filter(py::module_& module) {
           },
           py::arg("u"), py::arg("steps"),
           "The next `steps` samples without measurements; the filter stays as it is. u (samples, inputs): row i is the "
-          "input planned for the sample i + 1 ahead, as step will be given it; steps minus the bank's input delay "
-          "(usually 1) of them are enough, None: none. Returns a Forecast.")
+          "input planned for the sample i + 1 ahead, as step will be given it; steps minus the bank's smallest input "
+          "delay (usually 1) of them are enough, None: none. Returns a Forecast.")
       .def("snapshot", &Filter::snapshot, "The filter's state as an array, to store it.")
       .def("restore", &Filter::restore, py::arg("snapshot"),
            "Continues from a snapshot of a filter of the same bank and options, with bit-identical steps.")

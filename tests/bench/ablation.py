@@ -44,9 +44,6 @@ FEATURES = [
     ("windows by least squares (no Huber)", {"window.loss": "trivial"}),
     ("mixture over parameters alone", {"mixture.features": "parameters"}),
     ("diagonal mixture", {"mixture.covariance": "diagonal"}),
-    ("at most 8 modes (bank.modes)", {"bank.modes": "8"}),
-    ("at most 5 modes", {"bank.modes": "5"}),
-    ("at most 3 modes", {"bank.modes": "3"}),
     ("the same bank in salvi2025", {"bank:filter.variant": "salvi2025"}),
     ("one Kalman filter (kf)", {"filter.variant": "kf"}),
 ]

@@ -7,6 +7,8 @@ import subprocess
 
 # Without refinement, which takes long and adds no kind of number to a page.
 QUICK = ("--bank.refine", "none")
+# More parameters than the demo's three.
+LAGS = ("--window.state_lags", "2", "--window.input_lags", "2")
 HOSTILE_STATE = "<script>window.hostile=1</script>"
 HOSTILE_MODE = "<img src=x onerror='window.hostile=5'> %{y} &lt;"
 HOSTILE_INPUT = "\"><img src=x onerror='window.hostile=2'>&amp;"
@@ -45,13 +47,13 @@ def real_data():
 
 def demo_data(modebank):
     data = modebank.work / "demo_data"
-    modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data)
+    modebank("simulate", modebank.source / "configs/simulate_demo.ini", "--simulate.output", data)
     return data
 
 
 def demo(modebank, data, name, *options, command="run"):
     quick = [] if command == "identify" else ["--mixture.restarts", "2", *QUICK]  # identify reads none of them
-    return modebank.run(name, modebank.source / "configs/tyres.ini", "--data.root", data, *quick, *options, command=command)
+    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *LAGS, *quick, *options, command=command)
 
 
 def ice(modebank):
@@ -100,7 +102,7 @@ def hostile(modebank):
 def study(modebank, data):
     folder = modebank.work / "study"
     config = modebank.work / "study.ini"
-    config.write_text((modebank.source / "configs/tyres.ini").read_text() + "\nrestarts = 1\n[study]\n"
+    config.write_text((modebank.source / "configs/demo.ini").read_text() + "\n[mixture]\nrestarts = 1\n[study]\n"
                       "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
                       encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK)
@@ -110,9 +112,9 @@ def study(modebank, data):
 def large_study(modebank):
     """A study of 200 runs over short data: 50 settings with four seeds each."""
     data, folder, config = modebank.work / "short", modebank.work / "large_study", modebank.work / "large_study.ini"
-    modebank("simulate", modebank.source / "configs/simulate_ice.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
-    text = (modebank.source / "configs/tyres.ini").read_text().replace("components = 1..8", "restarts = 1")
-    config.write_text(text + "\n[study]\nvary = window.length = 10 | 15 | 20 | 25 | 30\nvary = mixture.components = 1 | 2 | 3 | 4 | 5\n"
+    modebank("simulate", modebank.source / "configs/simulate_demo.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
+    text = (modebank.source / "configs/demo.ini").read_text()
+    config.write_text(text + "\n[mixture]\nrestarts = 1\n[study]\nvary = window.length = 10 | 15 | 20 | 25 | 30\nvary = mixture.components = 1 | 2 | 3 | 4 | 5\n"
                              "vary = mixture.covariance = full | diagonal\nrepeats = 4\n", encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK, "--bank.transition", "labels")
     return folder

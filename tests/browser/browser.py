@@ -56,19 +56,6 @@ class Browser:
                 raise AssertionError(f"waited {seconds} s for: {what or script}")
             time.sleep(0.05)
 
-    def wait_still(self, expression):
-        """Waits until the expression's value is the same for ten frames."""
-        self.driver.execute_async_script(f"""
-            const done = arguments[0], value = () => {expression};
-            let last = value(), same = 0;
-            const look = () => {{
-              const now = value();
-              same = now === last ? same + 1 : 0;
-              last = now;
-              if (same >= 10) done(); else requestAnimationFrame(look);
-            }};
-            requestAnimationFrame(look);""")
-
     def open(self, page, seconds=PATIENCE_S):
         """Opens a file and waits until the page is drawn; returns the seconds that this took."""
         self.messages()

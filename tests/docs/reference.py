@@ -56,10 +56,10 @@ def keys():
 def archive():
     if not hasattr(archive, "path"):
         folder = tempfile.mkdtemp(prefix="modebank-reference-")
-        done = modebank("demo", "tyres", "-o", f"{folder}/demo", *SMALL_DEMO)
+        done = modebank("demo", "-o", f"{folder}/demo", *SMALL_DEMO)
         if done.returncode != 0:
             sys.exit(f"the demo fails: {done.stderr}")
-        archive.path = f"{folder}/demo/tyres.h5"
+        archive.path = f"{folder}/demo/demo.h5"
     return archive.path
 
 

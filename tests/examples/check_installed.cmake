@@ -20,7 +20,7 @@ if(PART STREQUAL install)
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/installed)
 
   # An archive made by the installed program.
-  file(WRITE ${WORK}/one.ini "[system]\nkind = linear\nmodes = -0.3, -0.15, 0.15\nprocess_sd = 0.01\ninput_law = drive\n")
+  file(WRITE ${WORK}/one.ini "[system]\nmodes = -0.3, -0.15, 0.15\nprocess_sd = 0.01\ninput_law = drive\n")
   file(WRITE ${WORK}/linear.ini "[data]\nstate = wz\ninput = velL, velR\n[simulate]\nsystem = one.ini\nruns = 2\nsamples = 200\noutput = ${WORK}/runs\n")
   file(WRITE ${WORK}/run.ini "[data]\ninputs = pro_*.csv\nstates = imu_*.csv\nstate = wz\ninput = velL, velR\n[mixture]\ncomponents = 2\n")
   run(${WORK}/installed/bin/modebank simulate ${WORK}/linear.ini)

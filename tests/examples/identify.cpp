@@ -84,8 +84,7 @@ int main() try {
   modebank::SelectionOptions few;
   few.components = {1, 2, 3, 4};  // windows over a change of ground may form their own component
   const modebank::mixture::Clusters clusters = modebank::mixture::select(points, few);
-  std::printf("%zu windows (%td by Ceres, %td by the batch solver), %zu clusters\n", windows.run.size(),
-              windows.audit.ceres, windows.audit.batch, clusters.mixture.weights.size());
+  std::printf("%zu windows, %zu clusters\n", windows.run.size(), clusters.mixture.weights.size());
   for (std::ptrdiff_t k = 0; k < clusters.mixture.means.cols; ++k)
     std::printf("cluster %td: %.2f of the windows about %s = %.3f\n", k, clusters.mixture.weights[k],
                 windows.parameter_names[0].c_str(), clusters.mixture.means(0, k));

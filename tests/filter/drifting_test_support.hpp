@@ -78,7 +78,8 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
     }
     Eigen::VectorXd z(s.dimension()), v(s.acting_inputs());
     for (Index i = 0; i < s.state_lags; ++i) z.segment(i * s.states, s.states) = run.state.col(k - 1 - i);
-    for (Index i = 0; i < s.input_lags; ++i) v.segment(i * s.inputs, s.inputs) = run.input.col(k - s.input_delay - i);
+    for (Index i = 0; i < s.input_lags; ++i)
+      for (Index j = 0; j < s.inputs; ++j) v(i * s.inputs + j) = run.input(j, k - s.input_delay[j] - i);
     fill_regressor(s, z, v, h);
     run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h.cwiseQuotient(model.drift.scale);
     for (Index i = 0; i < s.states; ++i)

@@ -2,8 +2,9 @@
 
 #include <memory>
 #include <utility>
+#include <vector>
 
-#include "filter/step/bank.hpp"
+#include "filter/judge/decide/diagnostics.hpp"
 #include "ident/data/public_recording.hpp"
 #include "tests/filter/public_bank.hpp"
 
@@ -45,6 +46,37 @@ inline Bank single_mode(Bank bank, std::size_t j) {
 /// The part of the bank that this variant can filter. For kf it is the first mode only.
 inline Bank steppable(Bank bank, FilterVariant variant) {
   return variant == FilterVariant::kf ? single_mode(std::move(bank), 0) : bank;
+}
+
+/// The row of a filter on unseen runs.
+inline DiagnosticsRow row_of(const Bank& bank, std::vector<Trajectory> runs, const FilterOptions& options = {}) {
+  std::vector<RunEvaluation> evaluations;
+  for (Trajectory& run : runs) {
+    run.role = Role::test;
+    evaluations.push_back(evaluate_run(bank, run, options));
+  }
+  return diagnose("bank", Role::test, bank, options, runs, evaluations, score_runs(evaluations)).front();
+}
+
+/// The row of a filter on signals with these scores. With adaptive noise its NIS is not chi-square. `nis`: factor on
+/// the NIS.
+inline DiagnosticsRow row_of(const std::vector<std::vector<double>>& scores, FilterNoise noise = FilterNoise::adaptive,
+                             double nis = 1.0) {
+  const Eigen::Index signals = std::ssize(scores), samples = std::ssize(scores[0]) + 1;
+  const Bank bank = single_mode(example_bank(signals, 0, 1, 1e-6), 0);
+  Trajectory run;
+  run.state.setZero(signals, samples);
+  run.input.setZero(0, samples);
+  RunEvaluation e = evaluate_run(bank, run, {});
+  e.nis.tail(samples - 1).setZero();
+  for (Eigen::Index i = 0; i < signals; ++i)
+    for (Eigen::Index k = 1; k < samples; ++k) {
+      const double z = scores[static_cast<std::size_t>(i)][static_cast<std::size_t>(k - 1)];
+      e.pit(i, k) = 0.5 * std::erfc(-z / std::sqrt(2.0));
+      e.nis(k) += nis * z * z;
+    }
+  run.role = Role::test;
+  return diagnose("bank", Role::test, bank, {.noise = noise}, {run}, {e}, score_runs({e})).front();
 }
 
 }  // namespace modebank::test

@@ -82,7 +82,7 @@ class Columns(FieldTest):
     def test_without_times_the_screen_counts_samples(self):
         t, u, x = plant()
         self.write("log.csv", speed=x, throttle=u)
-        screen = self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine",
+        screen = self.run_program("run", "log.csv", "--archive.output", "out.h5", "--bank.refine",
                                   "none", "--mixture.components", 1).split("\nread ")[1]
         self.assertRegex(screen, r"without times[^$]*\d samples +\d")
         shown = self.run_program("show", "out.h5").split("\nmodes in words")[1]
@@ -116,7 +116,7 @@ class Files(Configured):
     def test_each_derived_channel_stays(self):
         self.write("log.csv", 'time,"speed, km/h",throttle', a=plant()[0], b=plant()[2], c=plant()[1])
         derived = ("--data.derive", "fast = throttle * 2", "--data.derive", "slow = throttle / 2")
-        self.run_program("run", "log.csv", "--archive.output", "out.h5", "--effort", "quick", "--bank.refine", "none",
+        self.run_program("run", "log.csv", "--archive.output", "out.h5", "--bank.refine", "none",
                          "--mixture.components", 1, "--data.input", "fast, slow", *derived)
         self.assertEqual((self.folder / "out.ini").read_text().count("derive ="), 3)  # init's own, fast and slow
 

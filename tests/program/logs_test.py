@@ -7,7 +7,7 @@ from program import SOURCE, ProgramTest, arrays, differing, facts, h5py, main, m
 sys.path.insert(0, str(SOURCE / "tests/io/recording"))
 import topics  # noqa: E402, writers of bags, MCAP and db3
 
-QUICK = ("--effort=quick", "--window.model=linear", "--mixture.components=1..2", "--bank.refine=none")
+QUICK = ("--window.model=linear", "--mixture.components=1..2", "--bank.refine=none")
 BEGIN_NS = 1_714_557_600_000_000_000
 
 

@@ -52,6 +52,7 @@ class Track(ProgramTest):
         for words, options in ((("--bank.measurement_variance=1e-5",), {"states": ("wz", "vx")}),
                                (("--data.lag_s=0.25",), {}), (("--data.lag_s=-0.25",), {}),
                                (("--data.missing=predict",), {"holes": True}),
+                               (("--window.model=varx", "--window.input_delay=1,4"), {}),
                                (("--window.model=varx", "--window.state_lags=4"), {})):
             archive, lines = self.learn(*words, **options)
             for which in ("bank", "baseline"):

@@ -20,7 +20,7 @@ class Demo(unittest.TestCase):
         cls.scratch = tempfile.TemporaryDirectory()
         cls.lines = []
         cls.addClassCleanup(cls.scratch.cleanup)
-        cls.archive = modebank.run(SOURCE / "configs/tyres.ini", progress=cls.lines.append, **QUICK,
+        cls.archive = modebank.run(SOURCE / "configs/demo.ini", progress=cls.lines.append, **QUICK,
                                    **{"data.root": folder(), "archive.output": cls.scratch.name + "/demo.h5"})
         cls.file = h5py.File(cls.archive.path)  # from here on both have the file open
         cls.addClassCleanup(cls.file.close)
@@ -150,9 +150,9 @@ class Demo(unittest.TestCase):
 
     def test_mistakes_are_exceptions_that_name_the_key(self):
         with self.assertRaisesRegex(ValueError, "window.length"):
-            modebank.run(SOURCE / "configs/tyres.ini", window={"length": "long"})
+            modebank.run(SOURCE / "configs/demo.ini", window={"length": "long"})
         with self.assertRaisesRegex(modebank.ConfigurationError, "did you mean window.length"):
-            modebank.run(SOURCE / "configs/tyres.ini", **{"window.lenght": 3})
+            modebank.run(SOURCE / "configs/demo.ini", **{"window.lenght": 3})
         with self.assertRaises(modebank.ConfigurationError):
             modebank.run("no_such_file.ini")
 
@@ -160,7 +160,7 @@ class Demo(unittest.TestCase):
         signal.signal(signal.SIGINT, signal.default_int_handler)  # background processes of a shell ignore it
         output = self.scratch.name + "/interrupted.h5"
         with self.assertRaises(KeyboardInterrupt):
-            modebank.run(SOURCE / "configs/tyres.ini", progress=lambda line: os.kill(os.getpid(), signal.SIGINT), **QUICK,
+            modebank.run(SOURCE / "configs/demo.ini", progress=lambda line: os.kill(os.getpid(), signal.SIGINT), **QUICK,
                          **{"data.root": folder(), "archive.output": output})
         self.assertFalse(os.path.exists(output))
 
@@ -170,7 +170,7 @@ class Demo(unittest.TestCase):
 
         output = self.scratch.name + "/stopped.h5"
         with self.assertRaises(KeyboardInterrupt):
-            modebank.run(SOURCE / "configs/tyres.ini", progress=stop, **QUICK,
+            modebank.run(SOURCE / "configs/demo.ini", progress=stop, **QUICK,
                          **{"data.root": folder(), "archive.output": output})
         self.assertFalse(os.path.exists(output))
 

@@ -35,7 +35,7 @@ class Figures(unittest.TestCase):
         scratch = tempfile.TemporaryDirectory()
         cls.addClassCleanup(scratch.cleanup)
         cls.scratch = pathlib.Path(scratch.name)
-        cls.archive = modebank.run(SOURCE / "configs/tyres.ini", **QUICK, **{"data.root": folder(), "archive.output": cls.scratch / "demo.h5"})
+        cls.archive = modebank.run(SOURCE / "configs/demo.ini", **QUICK, **{"data.root": folder(), "archive.output": cls.scratch / "demo.h5"})
         cls.file = h5py.File(cls.archive.path)
         cls.addClassCleanup(cls.file.close)
         (row,) = [row for row in cls.file["data/runs"][:] if row["name"] == b"01"]  # the first held-out run
@@ -117,7 +117,7 @@ class Figures(unittest.TestCase):
 
     def test_a_studys_figures_are_its_answers(self):
         study = self.scratch / "study"
-        subprocess.run([os.environ["MODEBANK_PROGRAM"], "study", SOURCE / "configs/tyres.ini", "--data.root", folder(), "--window.step", "10", "--window.model", "linear",
+        subprocess.run([os.environ["MODEBANK_PROGRAM"], "study", SOURCE / "configs/demo.ini", "--data.root", folder(), "--window.step", "10", "--window.model", "linear",
                         "--mixture.restarts", "1", "--bank.refine", "none", "--study.vary", "mixture.components = 1 | 2", "--study.vary", "window.length = 20 | 30",
                         "--study.output", study], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         done = self.draw(study, "-o", self.scratch / "of_study")
@@ -156,7 +156,7 @@ class Figures(unittest.TestCase):
 
     def test_what_is_missing_is_named(self):
         only_windows = self.scratch / "windows.h5"
-        subprocess.run([os.environ["MODEBANK_PROGRAM"], "identify", SOURCE / "configs/tyres.ini", "--data.root", folder(), "--archive.output", only_windows],
+        subprocess.run([os.environ["MODEBANK_PROGRAM"], "identify", SOURCE / "configs/demo.ini", "--data.root", folder(), "--archive.output", only_windows],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         drawn, left_out = figures.draw(modebank.Archive(only_windows))
         self.assertEqual(drawn, {})

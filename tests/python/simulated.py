@@ -1,4 +1,4 @@
-"""A robot on ice and grip as `modebank demo tyres` has it, shorter: files of runs, simulated once per test program."""
+"""A robot on ice and grip as `modebank demo` has it, shorter: files of runs, simulated once per test program."""
 import atexit
 import functools
 import os
@@ -19,7 +19,7 @@ def folder():
     """A folder with pro_NN.csv (inputs) and imu_NN.csv (states) of four runs."""
     path = pathlib.Path(tempfile.mkdtemp(prefix="modebank-python-test-"))
     atexit.register(shutil.rmtree, path)
-    subprocess.run([os.environ["MODEBANK_PROGRAM"], "simulate", SOURCE / "configs/simulate_ice.ini", "--simulate.output",
+    subprocess.run([os.environ["MODEBANK_PROGRAM"], "simulate", SOURCE / "configs/simulate_demo.ini", "--simulate.output",
                     path, "--simulate.runs", "4"], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     return path
 

@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 #include "filter/learn/chain/training_check.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "ident/fit/scale.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/import/import.hpp"
 #include "io/import/missing_values.hpp"
@@ -21,8 +19,6 @@ namespace modebank {
 namespace {
 
 using Eigen::VectorXd;
-
-constexpr double least_resolved = 0.25;  // smallest time constant that the data resolve, in sample periods
 
 /// Intermediate results that several parts of the report use.
 struct Material {
@@ -121,13 +117,12 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
     check_channels(material, data.input[i], unit(data.input_unit, i), false, static_cast<Index>(i), check);
 }
 
-/// Share of repeated samples in motion, over all runs or over the runs of a role.
-double repeats_of(const Material& material, bool is_state, Index row, const std::optional<Role>& role = {}) {
+/// Share of repeated samples in motion, over all runs.
+double repeats_of(const Material& material, bool is_state, Index row) {
   std::vector<VectorXd> rows;
   std::vector<bool> at_rest;
   for (std::size_t i = 0; i < material.ordered.size(); ++i) {
     const RunPair& run = material.ordered[i];
-    if (role && run.role != *role) continue;
     const std::vector<bool>& rests = (is_state ? material.states_rest : material.inputs_still)[i];
     at_rest.insert(at_rest.end(), rests.begin(), rests.end());
     rows.push_back((is_state ? run.states : run.inputs).values.row(row));
@@ -181,25 +176,6 @@ void check_lags(const CheckOptions& options, const Material& material, DataCheck
   });
 }
 
-double median_of(std::vector<double> values) {
-  return values.empty() ? 0.0 : median(Eigen::Map<const VectorXd>(values.data(), static_cast<Index>(values.size())));
-}
-
-/// Largest share of repeated values in motion among the measured inputs. Commands are ignored, because they are coarse
-/// or switched and so repeat often. Inputs that never change are also ignored.
-double repeated_inputs(const Material& material) {
-  double most = 0.0;
-  for (Index i = 0; i < material.structure.inputs; ++i) {
-    std::vector<VectorXd> rows;
-    for (const RunPair& run : material.ordered)
-      if (run.role == Role::train) rows.push_back(run.inputs.values.row(i));
-    const ChannelCheck values = check_channel(joined(rows));
-    if (values.quantum == 0.0 && values.levels > 1 && !values.two_level)
-      most = std::max(most, repeats_of(material, false, i, Role::train));
-  }
-  return most;
-}
-
 Recording training_of(const Material& material, const DataCheck& check) {
   Recording training;
   for (const ChannelSummary& summary : check.channels)
@@ -207,25 +183,6 @@ Recording training_of(const Material& material, const DataCheck& check) {
   for (const Trajectory& part : material.parts)
     if (part.role == Role::train) training.runs.push_back(part);
   return training;
-}
-
-/// Uses only training runs, because held-out runs must not affect the settings.
-void advise(const Material& material, const Recording& training, DataCheck& check) {
-  std::vector<double> inputs_hz, states_hz, jitter, time_constants;
-  for (const RunReport& run : check.runs) {
-    if (run.role != Role::train) continue;
-    inputs_hz.push_back(run.inputs.rate_hz);
-    states_hz.push_back(run.states.rate_hz);
-    jitter.push_back(run.inputs.jitter);
-    const bool resolved = run.lag.time_constant_s * run.inputs.rate_hz > least_resolved;
-    if (run.lag.status == LagStatus::converged && resolved) time_constants.push_back(run.lag.time_constant_s);
-  }
-  Advice& advice = check.advice;
-  advice.rate_facts = {median_of(inputs_hz), median_of(states_hz), median_of(jitter), repeated_inputs(material),
-                       median_of(time_constants)};
-  advice.rate = advise_rate(advice.rate_facts);
-  advice.length = advise_length(training.runs, material.structure);
-  if (!training.runs.empty()) advice.loss = advise_loss(training, material.structure);
 }
 
 Index longest_training_stretch(const Material& material) {
@@ -273,7 +230,6 @@ DataCheck check_data(const CheckOptions& options) {
   check_runs(material, check);
   check_lags(options, material, check);
   const Recording training = training_of(material, check);
-  advise(material, training, check);
   check.longest_stretch = longest_training_stretch(material);
   check.unidentifiable_effects = unidentifiable_effects(training, material.structure);
   check.unusable = find_unusable(check, training);

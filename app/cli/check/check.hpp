@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "ident/check/advice.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/lag/report.hpp"
 #include "io/import/options.hpp"
@@ -36,21 +35,12 @@ struct ChannelSummary {
   double saturated = 0.0;
 };
 
-/// Settings that suit the training runs. These runs are joined as configured.
-struct Advice {
-  RateFacts rate_facts;
-  RateAdvice rate;
-  LengthAdvice length;
-  LossAdvice loss;
-};
-
 struct DataCheck {
   Index window_length = 0;
   std::vector<RunReport> runs;
   std::vector<ChannelSummary> channels;  ///< the states, then the inputs
   LagReport lag;
   bool has_lag = false;
-  Advice advice;
   Index longest_stretch = 0;            ///< longest sequence of transitions without a gap in the training runs
   std::vector<std::string> dominating;  ///< remarks on values so large that they would dominate least squares
   std::string unidentifiable_effects;   ///< remark on effects that the training runs leave unidentifiable; empty if

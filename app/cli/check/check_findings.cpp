@@ -153,14 +153,6 @@ void lag_findings(const DataCheck& check, const Config& config, std::vector<std:
                     "{:.3f} +- {:.3f} nats/transition on training runs left out",
                     check.lag.lag.mean, check.lag.lag.standard_error, score->gain, score->gain_standard_error));
   }
-  if (const auto runs = runs_where(check,
-                                   [](const RunReport& run) {
-                                     return run.lag.match_windows > 1 &&
-                                            run.lag.match_largest_s - run.lag.match_least_s > 0.5;
-                                   });
-      !runs.empty())
-    found.push_back(
-        fmt::format("the lag changes by more than 0.5 s inside {}, so the stamps are unreliable there", runs));
 }
 
 }  // namespace
@@ -181,57 +173,6 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
   if (!check.unidentifiable_effects.empty()) found.push_back(check.unidentifiable_effects);
   lag_findings(check, config, found);
   return found;
-}
-
-std::string rate_reason(const Advice& advice) {
-  const RateFacts& facts = advice.rate_facts;
-  switch (advice.rate.reason) {
-    case RateReason::too_fast:
-      return fmt::format(
-          "{0:.3g} Hz gives {2:.0f} samples per time constant of the response ({1:.2g} s), so one step is mostly "
-          "noise; ten samples are enough",
-          facts.inputs_hz, facts.time_constant_s, facts.inputs_hz * facts.time_constant_s);
-    case RateReason::too_slow:
-      return fmt::format(
-          "{:.3g} Hz gives fewer than two samples per time constant of the response ({:.2g} s); the states have {:.3g} "
-          "Hz",
-          facts.inputs_hz, facts.time_constant_s, facts.states_hz);
-    case RateReason::repeats:
-      return fmt::format("the inputs repeat {:.0f} % of their samples, so this is about their own rate",
-                         percent * facts.repeated);
-    case RateReason::jitter:
-      return fmt::format("intervals vary by {:.0f} % of a period, but a model has one step length",
-                         percent * facts.jitter);
-    case RateReason::keep:
-      break;
-  }
-  if (facts.time_constant_s > 0.0)
-    return fmt::format(
-        "the inputs' own times: {:.3g} Hz is {:.2g} samples per time constant ({:.2g} s), jitter {:.1f} %",
-        facts.inputs_hz, facts.inputs_hz * facts.time_constant_s, facts.time_constant_s, percent * facts.jitter);
-  return fmt::format("the inputs' own times ({:.3g} Hz, jitter {:.1f} %); no run shows a time constant for comparison",
-                     facts.inputs_hz, percent * facts.jitter);
-}
-
-std::string length_reason(const Advice& advice) {
-  if (advice.length.length == 0) return "every run is too short for even the shortest window";
-  if (advice.length.enough)
-    return fmt::format("the shortest with at most a fifth of the windows rank deficient ({:.0f} %)",
-                       percent * advice.length.deficient);
-  return fmt::format(
-      "{:.0f} % of the windows are still rank deficient, and longer ones help little, so these depend on the prior",
-      percent * advice.length.deficient);
-}
-
-std::string loss_reason(const Advice& advice) {
-  const TailCheck& tails = advice.loss.tails;
-  return fmt::format(
-      "{:.2g} % of one-step errors are beyond 4 robust standard deviations, {:.2g} % beyond 8 (normal "
-      "noise: 0.006 %, 0 %); {}",
-      percent * tails.beyond_four, percent * tails.beyond_eight,
-      advice.loss.loss == Loss::trivial ? "so least squares is fine"
-      : advice.loss.loss == Loss::tukey ? "this many gross errors must have no influence"
-                                        : "a bounded influence is safe, and costs 5 % efficiency at most");
 }
 
 }  // namespace modebank::app

@@ -41,16 +41,7 @@ json lag_json(const RunLag& lag) {
           {"lag_s", json_number(lag.lag_s)},
           {"lag_standard_error_s", json_number(lag.lag_standard_error_s)},
           {"time_constant_s", json_number(lag.time_constant_s)},
-          {"r_squared", json_number(lag.r_squared)},
-          {"drift_status", name_of(lag.drift_status)},
-          {"drifting_lag_s", json_number(lag.drifting_lag_s)},
-          {"drifting_lag_standard_error_s", json_number(lag.drifting_lag_standard_error_s)},
-          {"clock_drift", json_number(lag.clock_drift)},
-          {"clock_drift_standard_error", json_number(lag.clock_drift_standard_error)},
-          {"match_s", json_number(lag.match_s)},
-          {"match_least_s", json_number(lag.match_least_s)},
-          {"match_largest_s", json_number(lag.match_largest_s)},
-          {"match_windows", lag.match_windows}};
+          {"r_squared", json_number(lag.r_squared)}};
 }
 
 json run_json(const DataCheck& check, const RunReport& run) {
@@ -96,11 +87,7 @@ json lags_json(const LagReport& lag) {
                       {"rmse", json_number(score.rmse)},
                       {"gain", json_number(score.gain)},
                       {"gain_standard_error", json_number(score.gain_standard_error)}});
-  return {{"correction", name_of(lag.correction)},
-          {"lag_s", pooled_json(lag.lag)},
-          {"start_lag_s", pooled_json(lag.start_lag)},
-          {"clock_drift", pooled_json(lag.drift)},
-          {"scores", scores}};
+  return {{"correction", name_of(lag.correction)}, {"lag_s", pooled_json(lag.lag)}, {"scores", scores}};
 }
 
 }  // namespace
@@ -122,11 +109,7 @@ json check_json(const DataCheck& check, const std::vector<std::string>& findings
           {"runs", runs},
           {"channels", channels},
           {"lag", check.has_lag ? lags_json(check.lag) : json(nullptr)},
-          {"findings", findings},
-          {"advice",
-           {{"rate_hz", {{"value", check.advice.rate.rate_hz}, {"reason", rate_reason(check.advice)}}},
-            {"window_length", {{"value", check.advice.length.length}, {"reason", length_reason(check.advice)}}},
-            {"window_loss", {{"value", name_of(check.advice.loss.loss)}, {"reason", loss_reason(check.advice)}}}}}};
+          {"findings", findings}};
 }
 
 }  // namespace modebank::app

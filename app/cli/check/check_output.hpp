@@ -18,9 +18,4 @@ std::vector<std::string> findings_of(const DataCheck& check, const Config& confi
 std::string check_text(const DataCheck& check, const std::vector<std::string>& findings);
 nlohmann::json check_json(const DataCheck& check, const std::vector<std::string>& findings);
 
-/// Reason for the recommended rate.
-std::string rate_reason(const Advice& advice);
-std::string length_reason(const Advice& advice);
-std::string loss_reason(const Advice& advice);
-
 }  // namespace modebank::app

@@ -14,17 +14,6 @@ namespace {
 
 constexpr std::size_t most_rows = 20;
 
-std::string drift_text(const RunLag& lag) {
-  if (lag.drift_status != LagStatus::converged) return "-";
-  return fmt::format("{:+.1f} +- {:.1f}", per_mille * lag.clock_drift, per_mille * lag.clock_drift_standard_error);
-}
-
-std::string match_text(const RunLag& lag) {
-  if (lag.match_windows == 0) return "-";
-  return fmt::format("{:+.2f} [{:+.2f}, {:+.2f}] {}", lag.match_s, lag.match_least_s, lag.match_largest_s,
-                     lag.match_windows);
-}
-
 std::string levels_text(const RunReport& run) {
   std::vector<Index> levels;
   for (const ChannelCheck& channel : run.input) levels.push_back(channel.levels);
@@ -52,25 +41,23 @@ std::string run_row(const RunReport& run, std::size_t width) {
   return fmt::format(
       "{:<{}} {:<5} {:>6.0f} {:>6.4g} {:>6.4g} {:>6.1f} {:>4} {:>5} {:>5} {:>5.0f} {:>7.1f} {:>7} {:>5.1f} {:>4} "
       "{:>6.0f} "
-      "{:>6}  {:<17} {:<14} {}\n",
+      "{:>6}  {}\n",
       run.run, width, name_of(run.role), run.inputs.duration_s, run.inputs.rate_hz, run.states.rate_hz,
       percent * run.inputs.jitter, joint ? std::to_string(run.inputs.gaps) : both(run.inputs.gaps, run.states.gaps),
       joint ? std::to_string(faults_in_time) : both(faults_in_time, states_faults),
       both(run.inputs.missing_samples, run.states.missing_samples), percent * run.commands.still,
       run.commands.longest_constant_s, levels_text(run), percent * most_saturated(run), run.excitation,
       percent * run.windows.share(), outliers_of(run),
-      lag_estimate_text(run.lag.lag_s, run.lag.lag_standard_error_s, run.lag.status), drift_text(run.lag),
-      match_text(run.lag));
+      lag_estimate_text(run.lag.lag_s, run.lag.lag_standard_error_s, run.lag.status));
 }
 
 std::string run_table(const DataCheck& check) {
   std::size_t width = 3;
   for (const RunReport& run : check.runs) width = std::max(width, run.run.size());
   std::string text = fmt::format(
-      "{:<{}} {:<5} {:>6} {:>6} {:>6} {:>6} {:>4} {:>5} {:>5} {:>5} {:>7} {:>7} {:>5} {:>4} {:>6} {:>6}  {:<17} {:<14} "
-      "{}\n",
-      "run", width, "role", "s", "in Hz", "st Hz", "jit %", "gaps", "disor", "NaN", "rest%", "const s", "levels",
-      "sat%", "exc", "defic%", "spikes", "lag s", "drift ms/s", "best match s [range] windows");
+      "{:<{}} {:<5} {:>6} {:>6} {:>6} {:>6} {:>4} {:>5} {:>5} {:>5} {:>7} {:>7} {:>5} {:>4} {:>6} {:>6}  {}\n", "run",
+      width, "role", "s", "in Hz", "st Hz", "jit %", "gaps", "disor", "NaN", "rest%", "const s", "levels", "sat%",
+      "exc", "defic%", "spikes", "lag s");
   std::vector<std::string> names;
   for (const RunReport& run : check.runs) names.push_back(run.run);
   std::size_t rows = 0;
@@ -111,8 +98,7 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
           fmt::format(
               "  rest: all inputs zero; const: longest constant command in motion; levels, sat: distinct and saturated "
               "values;\n  exc: order of persistent excitation (10: or more); defic: rank-deficient windows of {} "
-              "transitions; lag: dead\n  time of the inputs, + later; best match: delay that includes the response's "
-              "time constant, median over windows\n\n",
+              "transitions; lag: dead\n  time of the inputs, + later\n\n",
               check.window_length);
   text += channel_table(check) + "\n";
   if (check.has_lag) {

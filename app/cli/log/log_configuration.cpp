@@ -4,21 +4,7 @@
 #include <utility>
 
 namespace modebank::app {
-namespace {
-
-const std::string data_section = "data.";
-
-}  // namespace
-
 void LogConfiguration::set(const std::string& key, const std::string& value, const std::string& why) {
-  if (key.starts_with(data_section)) {
-    const std::string name = key.substr(data_section.size());
-    if (value.empty())
-      proposal_.add(name, "", why);
-    else
-      proposal_.set(name, value, why);
-    return;
-  }
   std::erase_if(keys_,
                 [&](const Key& earlier) { return earlier.key == key && (!value.empty() || earlier.value.empty()); });
   keys_.push_back({key, value, why});
@@ -26,7 +12,7 @@ void LogConfiguration::set(const std::string& key, const std::string& value, con
 
 void LogConfiguration::explain(const std::string& key, const std::string& why) {
   for (ProposedKey& stated : proposal_.keys)
-    if (data_section + stated.key == key) stated.why = why;
+    if ("data." + stated.key == key) stated.why = why;
   for (Key& stated : keys_)
     if (stated.key == key) stated.why = why;
 }

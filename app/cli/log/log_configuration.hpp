@@ -18,7 +18,7 @@ class LogConfiguration {
 
   const Proposal& proposal() const { return proposal_; }
 
-  /// Sets a key or changes its reason. An empty `value` writes only a comment.
+  /// Sets a key of another section than [data], or changes its reason. An empty `value` writes only a comment.
   void set(const std::string& key, const std::string& value, const std::string& why);
   /// Changes the reason of an existing key.
   void explain(const std::string& key, const std::string& why);

@@ -1,8 +1,6 @@
 #include "app/cli/log/run_log.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <boost/algorithm/string/trim.hpp>
@@ -10,13 +8,12 @@
 
 #include "app/cli/commands.hpp"
 #include "app/cli/init_trial.hpp"
-#include "app/cli/log/decisions.hpp"
+#include "app/cli/log/joined_inputs.hpp"
 #include "app/cli/log/log_configuration.hpp"
 #include "app/cli/log/log_outputs.hpp"
 #include "app/cli/log/log_sets.hpp"
 #include "app/cli/log/log_text.hpp"
 #include "app/cli/log/same_runs.hpp"
-#include "app/cli/progress_meter.hpp"
 #include "app/config/configuration_output.hpp"
 #include "app/config/option_table.hpp"
 #include "app/init/init_json.hpp"
@@ -24,6 +21,7 @@
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "app/text/screen_labels.hpp"
+#include "app/text/structure_text.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
@@ -80,7 +78,8 @@ LookedInto look_into(std::vector<FileSet> sets) {
   return logs;
 }
 
-LogConfiguration configure(const CommandLine& line, const LookedInto& logs, const fs::path& target) {
+LogConfiguration configure(const CommandLine& line, const LookedInto& logs, const fs::path& target,
+                           const fs::path& archive) {
   const fs::path folder = fs::absolute(target).lexically_normal().parent_path();
   Proposal proposal = propose(logs.sets, logs.surveyed, logs.guess, folder.string());
   if (const std::string doubt = doubt_of_one_run(logs.sets, logs.surveyed, logs.guess); !doubt.empty())
@@ -88,23 +87,30 @@ LogConfiguration configure(const CommandLine& line, const LookedInto& logs, cons
   take_data_keys(line.overrides, proposal);
   state_values(proposal);
   make_it_run(proposal, target);
+  const bool stated = std::any_of(line.overrides.begin(), line.overrides.end(),
+                                  [](const auto& each) { return each.first == "data.input"; });
+  if (!line.dry_run) leave_out_joined_inputs(target, archive, line.typed, stated, proposal);
   LogConfiguration configuration(std::move(proposal), line.typed);
   take_other_keys(line.overrides, configuration);
   return configuration;
 }
 
-class DecidingLog : public Listener {
- public:
-  void progress(const std::string& text) const override { spdlog::info("{}", text); }
-};
+std::string lag_reason(const LagReport& lag) {
+  const auto taken = std::find_if(lag.scores.begin(), lag.scores.end(),
+                                  [&](const LagScore& score) { return score.correction == lag.correction; });
+  if (lag.correction == LagCorrection::none || taken == lag.scores.end())
+    return "no lag gains on training runs left out, so inputs keep their times";
+  return fmt::format(
+      "inputs act {:+.3f} +- {:.3f} s later than stamped: {:+.3f} +- {:.3f} nats per sample on training "
+      "runs left out",
+      lag.lag.mean, lag.lag.standard_error, taken->gain, taken->gain_standard_error);
+}
 
-std::vector<std::string> decide_more(const CommandLine& line, Effort effort, const LogOutputs& outputs,
-                                     LogConfiguration& configuration) {
-  if (line.dry_run) return {};
-  const Config config = configuration.config(outputs.configuration, outputs.archive);
-  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
-  const ProgressMeter meter(!line.quiet);
-  return decide(config, effort, line.overrides, configuration, DecidingLog());
+/// Adds the results of `run` to the reasons of the keys that caused these results: lag and structure.
+void explain_found(const Archive& archive, LogConfiguration& configuration) {
+  if (archive.lag) configuration.explain("data.lag_s", lag_reason(*archive.lag));
+  if (archive.structure)
+    configuration.set("window.model", "auto", structure_sentence(*archive.structure, acted_on(archive)));
 }
 
 void write_page_of(const Archive& archive, const LogOutputs& outputs, const CommandLine& line) {
@@ -125,16 +131,13 @@ std::string written_text(const LogOutputs& outputs) {
 bool names_logs(const std::vector<std::string>& files) { return std::any_of(files.begin(), files.end(), is_log); }
 
 Result do_run_log(const CommandLine& line) {
-  const Effort effort = effort_of(line.effort);
   refuse_keys(line.overrides);
   std::vector<FileSet> sets = nameable_sets(line.files);
   const LogOutputs outputs = log_outputs(line, sets);
   check_log_outputs(line, outputs, sets);
   const LookedInto logs = look_into(std::move(sets));
-  LogConfiguration configuration = configure(line, logs, outputs.configuration);
+  LogConfiguration configuration = configure(line, logs, outputs.configuration, outputs.archive);
   print_text(line, taken_text(logs.sets, logs.surveyed, logs.guess, configuration.proposal()));
-  const std::vector<std::string> decided = decide_more(line, effort, outputs, configuration);
-  for (const std::string& sentence : decided) print_text(line, paragraph("decided", sentence));
   Result result =
       do_configured(line, configuration.config(outputs.configuration, outputs.archive), outputs.configuration);
   if (line.dry_run) return result;
@@ -147,7 +150,6 @@ Result do_run_log(const CommandLine& line) {
   for (const std::string& advice : robot) result.text += paragraph("robot", advice);
   result.text += written_text(outputs);
   result.members.update(init_json(logs.surveyed, configuration.proposal()));
-  result.members["decisions"] = decided;
   result.members["robot"] = robot;
   result.members["written"] = {outputs.configuration.string(), outputs.archive.string(), outputs.page.string()};
   return result;

@@ -69,12 +69,6 @@ std::vector<Option> bank_options() {
               "measurement noise variance R; empty: the one that the baseline learns",
               MODEBANK_FIELD(bank.measurement_variance))
           .touch("when a warning says that R cannot be estimated: the square of your sensor's noise", competitors),
-      numeric("bank.modes", between(0, 1000), "",
-              "largest number of modes; the closest components are merged until the bank has no more than that. 0: no "
-              "limit",
-              MODEBANK_FIELD(bank.modes))
-          .touch("for a small filter, as on a microcontroller: the smallest number whose log score is good enough",
-                 bank, basic),
       words("bank.refine",
             "learning after the mixture. em: expectation-maximisation of the switching model. none: the mixture's "
             "modes stay. auto: em, but none for a motion model, bank.theta = mean, bank.noise = shared or fixed, and "

@@ -14,8 +14,8 @@ namespace {
 Option lag_option() {
   Option result =
       numeric("data.lag_s", any(), "s",
-              "delay between an input's stamp and its effect (negative: inputs are stamped late). auto estimates lag "
-              "and clock drift on the training runs and applies them where cross-validation gains",
+              "delay between an input's stamp and its effect (negative: inputs are stamped late). auto estimates one "
+              "lag on the training runs and applies it where cross-validation gains",
               MODEBANK_FIELD(data.lag_s));
   result.range = "a number or auto";
   result.set = [set = result.set](Config& config, const std::string& text) {
@@ -222,7 +222,7 @@ std::vector<Option> data_options() {
               "rate of the samples to use; 0: the inputs' own times. Else states are interpolated linearly and inputs "
               "are held. Below the log's rate, channels that change at every sample are averaged over each step",
               MODEBANK_FIELD(data.rate_hz))
-          .touch("when `modebank check` suggests a rate, because times jitter or values repeat", data, basic),
+          .touch("when times jitter or values repeat, which `modebank check` shows", data, basic),
       lag_option().touch("auto, when states and inputs come from two instruments; a number, when you know it", data,
                          basic),
       numeric("data.lag_range_s", above(0), "s",

@@ -31,7 +31,8 @@ Option model_option() {
 
 /// An option whose value is a number or auto. With window.model = auto the default is auto. `meanwhile`: the number
 /// until the search has found one.
-Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t meanwhile, Field<std::ptrdiff_t> count,
+template <class T>
+Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t meanwhile, Field<T> count,
                       Field<LagChoice> choice) {
   Option result = std::move(number);
   result.help += fmt::format("; auto: {}, as with model = auto", means);
@@ -47,22 +48,11 @@ Option number_or_auto(Option number, const std::string& means, std::ptrdiff_t me
   return result;
 }
 
-Option lag_option(std::string key, const Range& range, const std::string& help, Field<std::ptrdiff_t> count,
+template <class T>
+Option lag_option(std::string key, const Range& range, const std::string& help, Field<T> count,
                   Field<LagChoice> choice) {
   return number_or_auto(numeric(std::move(key), range, "samples", help, count), "chosen by training runs left out", 1,
                         count, choice);
-}
-
-/// window.scale: whether the residual scale is estimated for each window or for each run.
-Option scale_option() {
-  Option result =
-      words("window.scale", "residual scale sigma: one per window, or one per run", MODEBANK_FIELD(window.scale));
-  result.range = "window | run";
-  result.set = [set = result.set](Config& config, const std::string& text) {
-    if (text != "window" && text != "run") throw std::invalid_argument("is none of its words");
-    set(config, text);
-  };
-  return result;
 }
 
 /// window.prior: a word, or the standard deviations of the global prior.
@@ -87,6 +77,22 @@ Option prior_option() {
     const FitOptions& window = config.window;
     return window.prior == Prior::global && std::ssize(window.prior_sd) > 0 ? format_value(window.prior_sd)
                                                                             : format_value(window.prior);
+  };
+  return result;
+}
+
+Option intercept_option() {
+  Option result = flag("window.intercept",
+                       "whether the model has a constant term c. auto: unless leaving it out loses less than 6 nats on "
+                       "the training runs",
+                       MODEBANK_FIELD(window.intercept));
+  result.range += " | auto";
+  result.set = [set = result.set](Config& config, const std::string& text) {
+    config.structure.automatic_intercept = text == "auto";
+    set(config, text == "auto" ? "false" : text);
+  };
+  result.get = [get = result.get](const Config& config) {
+    return config.structure.automatic_intercept ? "auto" : get(config);
   };
   return result;
 }
@@ -119,8 +125,9 @@ std::vector<Option> window_options() {
                  MODEBANK_FIELD(window.input_lags), MODEBANK_FIELD(structure.input))
           .touch("with varx, or to keep auto from searching: when the length of the input's effect is known",
                  structure),
-      lag_option("window.input_delay", between(0, 1000),
-                 "time from an input to its first effect, with varx; 0: u[k+1] acts on x[k+1]",
+      lag_option("window.input_delay", each(between(0, 1000)),
+                 "time from an input to its first effect, with varx: one number for all inputs, or one per input; 0: "
+                 "u[k+1] acts on x[k+1]",
                  MODEBANK_FIELD(window.input_delay), MODEBANK_FIELD(structure.delay))
           .touch("with varx, or to keep auto from searching: when a dead time of whole samples is known. Lags between "
                  "clocks are data.lag_s",
@@ -129,8 +136,9 @@ std::vector<Option> window_options() {
           numeric("window.length", between(1, 1e6), "transitions", "length of a window", MODEBANK_FIELD(window.length)),
           "25, or 1.5 to 3 times the number of regressors if that is more; few where the motion changes often",
           shortest_automatic_length, MODEBANK_FIELD(window.length), MODEBANK_FIELD(structure.length))
-          .touch("when `modebank check` suggests another: longer for rank-deficient windows, shorter for modes that "
-                 "last less than a window; auto, when the model has many lags",
+          .touch("longer, for rank-deficient windows, which `modebank check` counts; shorter, for modes that last less "
+                 "than "
+                 "a window; auto, when the model has many lags",
                  windows, basic),
       number_or_auto(numeric("window.step", between(1, 1e6), "transitions",
                              "distance from one window's start to the next", MODEBANK_FIELD(window.step)),
@@ -138,16 +146,16 @@ std::vector<Option> window_options() {
                      MODEBANK_FIELD(structure.step))
           .touch("larger, when the windows take too long: neighbours share most of their samples", windows),
       words("window.loss", "robust loss of a sample's residual", MODEBANK_FIELD(window.loss))
-          .touch("when `modebank check` suggests it: tukey for gross errors, trivial for clean data", windows),
-      scale_option().touch("run, when windows are too short to estimate their own scale", windows),
+          .touch("tukey, for gross errors; trivial, for clean data", windows),
       prior_option().touch("none, when every window has full rank, and for the published recipe; standard deviations, "
                            "when the prior pulls windows of a rare ground towards the common one",
                            windows),
       terms_option().touch("a list, when physics gives the terms, such as vx * wz; none, to leave the competitor "
                            "nonlinear and its time out",
                            competitors),
-      flag("window.intercept", "whether the model has a constant term c", MODEBANK_FIELD(window.intercept))
-          .touch("true, when the motion has a constant part: a slope, a leak, a sensor's offset", windows),
+      intercept_option().touch("true, when the motion has a constant part: a slope, a leak, a sensor's offset or "
+                               "operating point, a bias; false, for the published recipe",
+                               windows),
       words("window.covariance", "covariance of a window's parameters: of the M-estimator (model), or HC3 sandwich",
             MODEBANK_FIELD(window.covariance))
           .touch("sandwich, when noise varies within a window and you use the windows' standard errors", windows),

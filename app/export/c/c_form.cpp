@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <boost/algorithm/string.hpp>
 #include <string_view>
@@ -45,7 +46,8 @@ std::string opening(const ExportedBank& exported, const char* what) {
       "{:.17g} s; {} state lag(s), {} input lag(s), delay {} sample(s){}{}\n * {} */\n",
       comment_text(exported.verdict_text()), what, comment_text(exported.provenance.modebank_version),
       comment_text(exported.archive), exported.filter, exported.sha256, exported_equation, exported.bank.dt_s,
-      s.state_lags, s.input_lags, s.input_delay, lag_text(exported.input_lag_s), remarks, transition_meaning);
+      s.state_lags, s.input_lags, fmt::join(s.input_delay.listed(), ", "), lag_text(exported.input_lag_s), remarks,
+      transition_meaning);
 }
 
 /// The template without its top comment. `prefix` replaces the prefix of the template's identifiers.

@@ -1,6 +1,7 @@
 #include "app/export/c/c_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -145,7 +146,8 @@ std::string bank_sizes(const ExportedBank& exported, const std::string& prefix) 
 }};
 )",
                      prefix, exported.bank.mode_count(), s.dimension(), exported.bank.C.rows(), s.inputs,
-                     s.acting_inputs(), std::max<Index>(1, s.inputs), s.input_delay + s.input_lags, s.state_lags) +
+                     s.acting_inputs(), std::max<Index>(1, s.inputs), s.input_delay.latest() + s.input_lags,
+                     s.state_lags) +
          places("Places in `input`", prefix + "_INPUT", exported.recorded_inputs) +
          places("Places in `measurement`", prefix + "_MEASUREMENT", exported.measurements) +
          places("Places in x", prefix + "_STATE", exported.states) + modes(exported, prefix + "_MODE");
@@ -153,22 +155,25 @@ std::string bank_sizes(const ExportedBank& exported, const std::string& prefix) 
 
 std::string bank_numbers(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
+  const LinearStructure& s = bank.structure;
   const StartMoments start = start_moments(bank);
   std::string text =
       fmt::format(
           "/* The bank. x: {}.\n * u: {}.\n * y: {}.\n * A[i][j] is in units of x[i] per x[j], B[i][j] of x[i] per "
           "u[j], c[i] of x[i], Q[i][j] of x[i] x[j]. */\n"
-          "enum {{\n  INPUT_DELAY = {}, /* samples from an input to its first effect */\n"
-          "  FIRST_TRANSITION = {}, /* of a run, by samples before it */\n"
+          "enum {{\n  FIRST_TRANSITION = {}, /* of a run, by samples before it */\n"
           "  ADAPTIVE_NOISE = {},\n  TRANSITION_BY_STATE = {}\n}};\n\n",
           joined_names(exported.states), joined_names(exported.inputs), joined_names(exported.measurements),
-          exported.structure().input_delay, exported.structure().first_transition(),
-          exported.options.noise == FilterNoise::adaptive ? 1 : 0, bank.transition_logit.empty() ? 0 : 1) +
+          exported.structure().first_transition(), exported.options.noise == FilterNoise::adaptive ? 1 : 0,
+          bank.transition_logit.empty() ? 0 : 1) +
       constant("bank_dt_s", number(bank.dt_s), "Length of a step [s]; 0: samples have no clock") +
       constant("bank_noise_forgetting", number(bank.noise_adaptation.forgetting),
                "of the noise scale, per sample, with ADAPTIVE_NOISE") +
       constant("bank_noise_prior_samples", number(bank.noise_adaptation.prior_samples),
                "samples at scale one that a start is worth") +
+      fmt::format(
+          "/* Samples from each input to its first effect */\nstatic const int bank_input_delay[] = {{{}}};\n\n",
+          fmt::join(s.input_delay.by_input(std::max<Index>(1, s.inputs)), ", ")) +
       model(exported) + constant("bank_C[MEASUREMENTS][STATES]", values(bank.C, "   "), "C") +
       constant("bank_R[MEASUREMENTS][MEASUREMENTS]", values(bank.R, "   "), "R") +
       constant("bank_T[MODES][MODES]", values(bank.transition.matrix(), "   "), transition_meaning) +

@@ -69,7 +69,8 @@ static int push(modebank_filter* filter, double time_s, const double* input, con
 static void acting_inputs(const modebank_filter* filter, double* v) {
   v[0] = 0;
   for (int a = 0; a < ACTING; ++a)
-    v[a] = filter->recorded[INPUT_DELAY + a / MODEBANK_ROOM_FOR_INPUTS][a % MODEBANK_ROOM_FOR_INPUTS];
+    v[a] = filter->recorded[bank_input_delay[a % MODEBANK_ROOM_FOR_INPUTS] + a / MODEBANK_ROOM_FOR_INPUTS]
+                           [a % MODEBANK_ROOM_FOR_INPUTS];
 }
 
 /* ---- Small matrices ---- */

@@ -13,14 +13,11 @@ std::string_view compare_js();  ///< script of the page that compares runs
 std::string_view index_js();    ///< script of a folder's index page
 std::string_view terms_json();  ///< definitions of all terms, for pages and for `help`
 
-// Configurations of the two demos.
+// Configurations of the demo.
 std::string_view simulate_demo_ini();
 std::string_view demo_ini();
-std::string_view simulate_ice_ini();
-std::string_view tyres_ini();
 
 // Systems to simulate.
-std::string_view husky_ice_system();
 std::string_view three_grips_system();
 std::string_view two_grounds_system();
 

@@ -96,7 +96,7 @@ std::string gain_sentence(const PairedGain& gain, const std::string& first, cons
   if (gain.gain == 0.0) return fmt::format("the banks of {} and {} predict equally well.", first, other);
   const std::string &ahead = gain.gain > 0 ? other : first, &behind = gain.gain > 0 ? first : other;
   const std::string size =
-      fmt::format("{}{}", gain_words(gain), gain.by_blocks ? " (error from blocks of samples)" : "");
+      fmt::format("{}{}", gain_words(gain), gain.by_blocks ? " (error from stretches of runs)" : "");
   if (!std::isfinite(gain.margin))
     return fmt::format("the bank of {} scores higher than that of {}{}; there are too few samples to know the error.",
                        ahead, behind, size);

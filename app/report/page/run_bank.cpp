@@ -138,18 +138,6 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
-/// Loss of log score that the limit on the number of modes causes, on the runs of a role. Null without a limit.
-json merging_of(const Archive& archive, Role role) {
-  for (const MergingCost& cost : archive.merging)
-    if (cost.role == role)
-      return {{"components", cost.components},
-              {"modes_unlimited", cost.modes_unlimited},
-              {"log_score_unlimited", number(cost.log_score_unlimited)},
-              {"log_score", number(cost.log_score)},
-              {"loss", number(cost.loss)}};
-  return nullptr;
-}
-
 json gains_cells(const ModeFamily& family, const std::vector<bool>& unidentifiable) {
   json cells = json::array();
   for (Index i = 0; i < family.gain.rows(); ++i)
@@ -283,7 +271,6 @@ nlohmann::json bank_section(const Archive& archive) {
           {"switch_weights", switch_weights_of(bank)},
           {"confusion", label_section(archive, families)},
           {"screened", screened_of(bank)},
-          {"merged", merging_of(archive, role)},
           {"refined", archive.unrefined.has_value()}};
 }
 

@@ -50,16 +50,11 @@ std::string use_words(const FirstScreen& screen) {
   return "cannot tell yet";
 }
 
-/// A short recommendation such as "use it: calibrated, ...".
-std::string band_advice(const FirstScreen& screen) {
-  return fmt::format("{}: {}", use_words(screen), screen.verdict_words);
-}
-
 json coverage_card(const FirstScreen& screen) {
   if (std::isnan(screen.coverage)) return nullptr;
   return card("coverage", "In the 95 % band", number(screen.coverage, fmt::format("{:.1f} %", 100 * screen.coverage)),
               fmt::format("[{:.1f}, {:.1f}]", 100 * screen.coverage_lower, 100 * screen.coverage_upper),
-              band_advice(screen));
+              fmt::format("{}: {}", use_words(screen), screen.verdict_words));
 }
 
 json error_card(const ErrorAhead& error) {

@@ -80,7 +80,7 @@ JudgedGain judged(const ArchiveGain& by_run, const RepeatGain& by_repeat) {
     return {by_repeat.gain, by_repeat.standard_error, by_repeat.margin,
             by_repeat.repeats < 2 ? "there are no pairs" : repeats};
   const PairedGain& first = by_run.gain;
-  const std::string runs = first.by_blocks ? "blocks of samples" : fmt::format("{} runs", by_run.runs);
+  const std::string runs = first.by_blocks ? "stretches of runs" : fmt::format("{} runs", by_run.runs);
   if (by_repeat.repeats < 2) return {first.gain, first.standard_error, first.margin, runs};
   // The best setting has the best mean over repeats. Its first repeat alone may be worse than the rival's.
   return {by_repeat.gain, std::hypot(first.standard_error, by_repeat.standard_error),

@@ -186,7 +186,7 @@ void apply_conditions(const Definition& definition, const std::vector<std::strin
 StudySpace lay_out(const Config& config) {
   const Definition definition = read_definition(config.study);
   if (definition.varied.empty())
-    throw ConfigurationError("study.vary is empty; name the keys to vary, for example vary = bank.modes = 2 | 3");
+    throw ConfigurationError("study.vary is empty; name the keys to vary, for example vary = window.step = 1 | 5");
   StudySpace space;
   std::vector<std::string> own;
   for (const VariedKey& varied : definition.varied) {

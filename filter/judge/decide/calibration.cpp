@@ -16,8 +16,6 @@ constexpr double nis_tolerance = 0.1;  // tolerated deviation of the mean NIS, a
                                        // corresponds to a twentieth of the band's width
 constexpr double outside_level = 0.99;
 
-bool within(double value, double least, double largest) { return value >= least && value <= largest; }
-
 /// Verdict of the mean NIS: -1 for underconfident, 1 for overconfident, 0 for neither.
 int judge_nis(const BandCounts& counts) {
   if (!counts.chi_square_nis) return 0;
@@ -60,8 +58,10 @@ Calibration calibration_of(const BandCounts& counts, double time) {
   if (outside < true_outside && close.lower > largest_close) return Calibration::underconfident;
   if (const int nis = judge_nis(counts); nis != 0)
     return nis > 0 ? Calibration::overconfident : Calibration::underconfident;
-  const bool inside =
-      within(outside, least_outside, largest_outside) && within(mean_of(near), least_close, largest_close);
+  const bool inside = within(outside, least_outside, largest_outside) &&
+                      within(mean_of(near), least_close, largest_close) &&
+                      within(mean_distance(counts.nis, counts.nis_degrees) / counts.nis_degrees, least_nis, most_nis) &&
+                      within(counts.correlation, -largest_correlation, largest_correlation);
   const Interval likely = fraction_interval(misses, time);
   return inside && !says_nothing(likely, least_outside, largest_outside) &&
                  !says_nothing(close, least_close, largest_close)

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "filter/judge/score/coverage.hpp"
 #include "filter/judge/score/squared_distances.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "modebank/base/names.hpp"
@@ -16,7 +15,9 @@ namespace modebank {
 /// - overconfident: more than 6 % lie outside, and more than 5 % with 99 % confidence.
 /// - underconfident: fewer than 2.5 % lie outside, and fewer than 5 % with 99 % confidence. Or fewer than 5 % lie
 ///   outside, and more than 4 % lie in the central band that should hold 2.5 % (too_close), with 95 % confidence.
-/// - calibrated: 2.5 to 7.5 % lie outside, 1 to 4 % lie too close, and neither interval contains its whole band.
+/// - calibrated: 2.5 to 7.5 % lie outside, 1 to 4 % lie too close, and neither interval contains its whole band. The
+///   mean NIS per signal lies in 0.75 to 1.3, and the lag-1 autocorrelation of each signal's z within +- 0.2. At each
+///   of these limits a prediction loses 0.02 nats.
 /// - undecided: all other cases, such as a few hundred samples.
 /// If the filter is neither overconfident nor underconfident by these rules, the mean NIS decides. It must lie outside
 /// the 99 % interval for a correct model and differ from the expected mean by more than a tenth. This rule holds only
@@ -35,6 +36,8 @@ struct EnumNames<Calibration> {
 
 /// Limits for `calibrated`: share of signals outside the deciding band, and share of signals too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
+/// Limits for `calibrated`: mean NIS per signal, and lag-1 autocorrelation of z.
+inline constexpr double least_nis = 0.75, most_nis = 1.3, largest_correlation = 0.2;
 
 /// Shares of signals outside the band. If significant, they decide a verdict (calibration_of).
 inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
@@ -52,6 +55,7 @@ struct BandCounts {
   SquaredDistances nis;         ///< NIS of each sample
   double nis_degrees = 1.0;     ///< n_y
   bool chi_square_nis = false;  ///< whether the NIS is chi-square for a correct model
+  double correlation = 0.0;     ///< largest lag-1 autocorrelation of a signal's z by absolute value; 0 if unknown
 };
 
 /// Autocorrelation time of hits, from the sizes of all signals, with a margin. NaN without signals.
@@ -59,6 +63,7 @@ double time_by_sizes(const SeriesByRun& sizes);
 /// Interval of a fraction of hits, for the effective number of independent samples. `time`: from time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
+inline bool within(double value, double least, double largest) { return value >= least && value <= largest; }
 /// Whether an interval contains the whole calibrated band and values outside. If so, the data are inconclusive.
 bool says_nothing(const Interval& interval, double least, double largest);
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <iterator>
 
-#include "filter/judge/score/coverage.hpp"
+#include "filter/judge/score/squared_distances.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -45,6 +45,17 @@ class Collector {
     add_visits(e);
   }
 
+  /// Finds the largest lag-1 autocorrelation. The samples of one mode only are no neighbours, so they have none.
+  void correlate() {
+    const std::size_t signals = static_cast<std::size_t>(sums.squared_state_error.size());
+    for (std::size_t i = 0; i < signals; ++i) {
+      SeriesByRun z;
+      for (std::size_t run = i; run < sums.z.size(); run += signals) z.push_back(sums.z[run]);
+      const double value = largest_autocorrelation(z, 1).value;
+      if (std::abs(value) > std::abs(sums.counts.correlation)) sums.counts.correlation = value;
+    }
+  }
+
  private:
   /// Reserves memory for all samples of a run. Without this, growing series would take up to twice the memory.
   void make_room(const RunEvaluation& e, OutputSeries& z) {
@@ -73,7 +84,6 @@ class Collector {
 
   void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, OutputSeries& z) {
     ++sums.samples;
-    if (e.spread_share.size() > 0) sums.differences += e.spread_share(k);
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);
@@ -129,6 +139,7 @@ Collected collect(const Bank& bank, Index mode, Role role, bool chi_square_nis, 
   Collector collector(bank, mode, chi_square_nis, nees_states);
   for (std::size_t i = 0; i < runs.size(); ++i)
     if (runs[i].role == role) collector.add(runs[i], evaluations.at(i), scores.at(i));
+  collector.correlate();
   return std::move(collector.sums);
 }
 

@@ -14,7 +14,7 @@ namespace modebank {
 /// Statistics of the samples of one row.
 struct Collected {
   Eigen::Index samples = 0, entropy_samples = 0;
-  double usage = 0.0, entropy = 0.0, differences = 0.0, visits = 0.0, visited = 0.0;
+  double usage = 0.0, entropy = 0.0, visits = 0.0, visited = 0.0;
   BandCounts counts;
   SquaredDistances nees;
   SeriesByRun z;  ///< only for the whole filter: one series per run and measured signal

@@ -5,7 +5,6 @@
 #include <charconv>
 #include <cmath>
 
-#include "filter/judge/decide/calibration_reason.hpp"
 #include "filter/judge/decide/collected.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -14,6 +13,57 @@ namespace modebank {
 namespace {
 
 using Eigen::Index;
+
+constexpr double coloured = 0.01;          // whiteness p
+constexpr double noticeable_colour = 0.1;  // autocorrelation
+
+CalibrationReason reason_of_overconfidence(const DiagnosticsRow& row) {
+  const bool many = 1.0 - row.coverage_95 > many_outside && row.coverage_95_upper < 1.0 - true_outside;
+  return many ? CalibrationReason::band : CalibrationReason::nis;
+}
+
+CalibrationReason reason_of_underconfidence(const DiagnosticsRow& row) {
+  const double outside = 1.0 - row.coverage_95;
+  if (outside < few_outside && row.coverage_95_lower > 1.0 - true_outside) return CalibrationReason::band;
+  return outside < true_outside && row.too_close_lower > largest_close ? CalibrationReason::close
+                                                                       : CalibrationReason::nis;
+}
+
+CalibrationReason reason_of_doubt(const DiagnosticsRow& row) {
+  const Interval outside{1.0 - row.coverage_95_upper, 1.0 - row.coverage_95_lower};
+  const bool unknown = row.samples == 0 || std::isnan(row.coverage_95) ||
+                       says_nothing(outside, least_outside, largest_outside) ||
+                       says_nothing({row.too_close_lower, row.too_close_upper}, least_close, largest_close);
+  if (unknown) return CalibrationReason::few_samples;
+  if (!within(1.0 - row.coverage_95, least_outside, largest_outside)) return CalibrationReason::band;
+  if (!within(row.too_close, least_close, largest_close)) return CalibrationReason::close;
+  const auto signals = static_cast<double>(row.state_rmse.size());
+  return within(row.nis_mean, least_nis * signals, most_nis * signals) ? CalibrationReason::pattern
+                                                                       : CalibrationReason::nis;
+}
+
+}  // namespace
+
+CalibrationReason reason_of(const DiagnosticsRow& row) {
+  switch (row.verdict) {
+    case Calibration::overconfident:
+      return reason_of_overconfidence(row);
+    case Calibration::underconfident:
+      return reason_of_underconfidence(row);
+    case Calibration::undecided:
+      return reason_of_doubt(row);
+    case Calibration::calibrated:
+      break;
+  }
+  return CalibrationReason::band;
+}
+
+bool errors_follow_a_pattern(const DiagnosticsRow& row) {
+  return (row.whiteness_p < coloured && std::abs(row.autocorrelation) > noticeable_colour) ||
+         (row.verdict == Calibration::undecided && reason_of(row) == CalibrationReason::pattern);
+}
+
+namespace {
 
 constexpr double negligible_R = 1e-6;  // limit of R as a share of the innovations' variance
 
@@ -76,7 +126,6 @@ void set_distances(const Collected& c, double nees_states, DiagnosticsRow& row) 
 
 DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   DiagnosticsRow row;
-  const double N = c.samples > 0 ? static_cast<double>(c.samples) : not_a_number;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
   row.samples = c.samples;
   row.usage = c.usage / all;
@@ -89,15 +138,13 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
-  row.spread_share = c.differences / N;
   row.verdict = calibration_of(c.counts, time);
   return row;
 }
 
-constexpr double takes_all = 0.99;              // limit of a mode's usage; a mode above the limit is flagged
-constexpr double unused = 1e-3;                 // usage
-constexpr double flat_entropy = 0.95;           // as a share of log K
-constexpr double dominating_differences = 0.5;  // as a share of the trace of S
+constexpr double takes_all = 0.99;     // limit of a mode's usage; a mode above the limit is flagged
+constexpr double unused = 1e-3;        // usage
+constexpr double flat_entropy = 0.95;  // as a share of log K
 
 void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
 
@@ -124,7 +171,6 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
     if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
   if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
-  if (all.spread_share > dominating_differences) add_flag(flags, "spread dominates S");
   if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
   if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above the interval of a correct model");
   if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below the interval of a correct model");
@@ -146,10 +192,10 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
 
 }  // namespace
 
-std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
-                                          const FilterOptions& options, const std::vector<Trajectory>& runs,
-                                          const std::vector<RunEvaluation>& evaluations,
-                                          const std::vector<RunScores>& scores) {
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank,
+                                     const FilterOptions& options, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations,
+                                     const std::vector<RunScores>& scores) {
   if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
   // True if every prediction is one Gaussian of known variance.
   const bool chi_square_nis =
@@ -173,15 +219,6 @@ std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, 
   std::vector<DiagnosticsRow> rows{row_of(-1)};
   for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
   rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states));
-  return rows;
-}
-
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
-                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
-                                     const std::vector<RunScores>& scores) {
-  std::vector<DiagnosticsRow> rows = diagnose_role(filter, Role::train, bank, options, runs, evaluations, scores);
-  const auto held_out = diagnose_role(filter, Role::test, bank, options, runs, evaluations, scores);
-  rows.insert(rows.end(), held_out.begin(), held_out.end());
   return rows;
 }
 

@@ -47,20 +47,27 @@ struct DiagnosticsRow {
   double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, found at autocorrelation_lag; 0
                                  ///< for a mode
   Eigen::Index autocorrelation_lag = 0;
-  double spread_share = 0.0;  ///< mean share of the trace of S that comes from differences between the modes
   Calibration verdict = Calibration::undecided;
   std::string flags;  ///< remarkable facts, separated by "; "
 };
 
-/// Rows of one filter. Each role with runs has a row for the whole filter, then one for each mode if there are several
-/// modes. `options`: options of the filter that made the evaluations. `scores`: scores of the evaluations (score_runs).
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, const Bank& bank, const FilterOptions& options,
-                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
+/// Rows of one filter on the runs of a role: the whole filter, then each mode if there are several. Without runs there
+/// are no rows. Only the runs of this role need an evaluation. `options`: options of the filter that made the
+/// evaluations. `scores`: scores of the evaluations (score_runs).
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank,
+                                     const FilterOptions& options, const std::vector<Trajectory>& runs,
+                                     const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);
-/// The rows of one role. Only the runs of this role need an evaluation.
-std::vector<DiagnosticsRow> diagnose_role(const std::string& filter, Role role, const Bank& bank,
-                                          const FilterOptions& options, const std::vector<Trajectory>& runs,
-                                          const std::vector<RunEvaluation>& evaluations,
-                                          const std::vector<RunScores>& scores);
+
+/// Numbers that a verdict is based on (rules: calibration.hpp). band: share inside the 95 % band. close: share near the
+/// middle of the band. nis: mean NIS. pattern: lag-1 autocorrelation. few_samples: an interval is wider than the
+/// calibrated band.
+enum class CalibrationReason { band, close, nis, pattern, few_samples };
+
+CalibrationReason reason_of(const DiagnosticsRow& row);
+
+/// Whether earlier errors predict a filter's errors: the errors are not white (Ljung & Box), and at least a hundredth
+/// of their variance is predictable; or the verdict says so.
+bool errors_follow_a_pattern(const DiagnosticsRow& row);
 
 }  // namespace modebank

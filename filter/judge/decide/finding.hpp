@@ -106,6 +106,7 @@ struct Finding {
   Answer answer = Answer::cannot_tell;
   Role role = Role::test;
   Eigen::Index runs = 0;       ///< number of judged runs with scored samples
+  bool stretches = false;      ///< whether the runs are stretches of one drive; filled in by the output
   Eigen::Index modes = 0;      ///< number of modes of the bank
   bool modes_differ = false;   ///< whether the modes differ in theta by more than their errors
   bool errors_known = true;    ///< `errors_known` of the bank. If false, modes may differ although `modes_differ` is

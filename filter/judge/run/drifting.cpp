@@ -48,7 +48,7 @@ namespace {
 class DriftingLookAhead {
  public:
   DriftingLookAhead(const Bank& bank, const RunInstants& instants, const Trajectory& run, DriftingForecasts& out)
-      : instants_(instants), run_(run), out_(out), noise_(bank.running_noise.nu), forecast_(bank) {}
+      : instants_(instants), run_(run), out_(out), running_(bank.running_noise), noise_(running_.nu), forecast_(bank) {}
 
   void from(Index t, const DriftingRecursion& origin) {
     forecast_.start(origin.z(), origin.save());
@@ -60,6 +60,7 @@ class DriftingLookAhead {
   const RunInstants& instants_;
   const Trajectory& run_;
   DriftingForecasts& out_;
+  RunningNoise running_;
   StudentNoise noise_;
   DriftingForecast forecast_;
 
@@ -68,6 +69,10 @@ class DriftingLookAhead {
     if (missing_entries(y) > 0) return;
     const Eigen::VectorXd error = y - forecast_.prediction();
     const WhitenedError white = whiten(error, forecast_.covariance());
+    const double factor = running_.factor_at(out_.predictions.horizons[horizon]);
+    const Eigen::ArrayXd deviation = (factor * forecast_.covariance().diagonal().array()).max(least_variance).sqrt();
+    for (Index i = 0; i < error.size(); ++i)
+      out_.predictions.pit[horizon](i, k) = noise_.probability(error(i) / deviation(i));
     out_.predictions.error[horizon].col(k) = error;
     out_.whitened[horizon].col(k) = white.error;
     out_.predictions.log_density(static_cast<Index>(horizon), k) = log_density(noise_, white.error) - white.log_scale;

@@ -1,11 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
-#include "filter/step/equations/predicted_mixture.hpp"
 
 /// The interface between free runs and the models that predict (filter/step/forecast.hpp).
 namespace modebank {
@@ -33,37 +28,6 @@ class Forecast {
   Forecast() = default;
   Forecast(const Forecast&) = default;
   Forecast& operator=(const Forecast&) = default;
-};
-
-/// A mixture of normal distributions of one signal.
-struct NormalMixture {
-  Eigen::VectorXd weight, mean, deviation;
-
-  double probability(double y) const {
-    double sum = 0.0;
-    for (Eigen::Index j = 0; j < weight.size(); ++j) sum += weight(j) * normal_cdf((y - mean(j)) / deviation(j));
-    return std::min(sum, 1.0);
-  }
-  /// Quantile by bisection between the parts' own quantiles. `score`: normal quantile of the probability.
-  double quantile(double probability_below, double score) const {
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (Eigen::Index j = 0; j < weight.size(); ++j) {
-      if (!(weight(j) > negligible_weight)) continue;
-      low = std::min(low, mean(j) + score * deviation(j));
-      high = std::max(high, mean(j) + score * deviation(j));
-    }
-    constexpr int most_halvings = 200;
-    constexpr double close = 1e-12;
-    for (int i = 0; i < most_halvings && high - low > close * (std::abs(low) + std::abs(high)); ++i) {
-      const double middle = 0.5 * (low + high);
-      (probability(middle) < probability_below ? low : high) = middle;
-    }
-    return 0.5 * (low + high);
-  }
-
- private:
-  static constexpr double negligible_weight = 1e-9;  ///< smallest weight of a part that can matter at the edge of a
-                                                     ///< band
 };
 
 }  // namespace modebank

@@ -83,7 +83,7 @@ struct FreeRunRow {
   Eigen::Index lost_paths = 0;
 };
 
-/// Rows of one filter, in the order of summarize().
+/// Rows of one filter: training runs in order, then the pooled "*" row; then held-out runs.
 std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std::vector<Trajectory>& runs,
                                             const std::vector<FreeRun>& free_runs, const FreeRunOptions& options);
 

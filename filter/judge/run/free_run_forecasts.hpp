@@ -29,21 +29,7 @@ class MomentForecast final : public Forecast {
   void step(const Vector& inputs) override { bank_.step(inputs); }
 
   void arrive(Eigen::Index) override {
-    const FilterStep<N, NY>& step = bank_.predicted();
-    for (NormalMixture& signal : signals_) {
-      signal.weight = step.predicted_probability;
-      signal.mean.resize(signal.weight.size());
-      signal.deviation.resize(signal.weight.size());
-    }
-    for (std::size_t h = 0; h < step.kalman.size(); ++h) {
-      const Eigen::VectorXd y = bank_.model().C * step.kalman[h].predicted.mean;
-      for (std::size_t s = 0; s < signals_.size(); ++s) {
-        const auto i = static_cast<Eigen::Index>(s), j = static_cast<Eigen::Index>(h);
-        signals_[s].mean(j) = y(i);
-        signals_[s].deviation(j) =
-            std::sqrt(std::max(step.kalman[h].innovation_covariance(i, i) + rounding(i), least_variance));
-      }
-    }
+    for (Eigen::Index i = 0; i < std::ssize(signals_); ++i) signals_[static_cast<std::size_t>(i)] = bank_.signal(i);
   }
 
   Eigen::VectorXd mean() const override {
@@ -71,8 +57,6 @@ class MomentForecast final : public Forecast {
   BankForecast<N, NY> bank_;
   std::vector<NormalMixture> signals_;  ///< n_y, mixtures for the present sample
 
-  /// Variance of the rounding of a recorded value.
-  double rounding(Eigen::Index i) const { return bank_.model().quantum(i) * bank_.model().quantum(i) / 12.0; }
   const NormalMixture& of(Eigen::Index i) const { return signals_[static_cast<std::size_t>(i)]; }
 };
 

@@ -39,6 +39,7 @@ class HorizonScores {
     const auto y = run_.state.col(k);
     if (missing_entries(y) > 0) return;
     out_.log_density(static_cast<Index>(horizon), k) = forecast_.observe(y, out_.error[horizon].col(k));
+    for (Index i = 0; i < y.size(); ++i) out_.pit[horizon](i, k) = forecast_.signal(i).probability(y(i));
   }
 };
 
@@ -63,6 +64,7 @@ HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index s
   if (!horizons.empty() && horizons.front() < 1) throw std::invalid_argument("horizons must be at least 1");
   HorizonEvaluation out;
   out.error.assign(horizons.size(), Eigen::MatrixXd::Constant(n_y, samples, not_a_number));
+  out.pit = out.error;
   out.log_density.setConstant(std::ssize(horizons), samples, not_a_number);
   out.horizons = std::move(horizons);
   return out;
@@ -82,6 +84,7 @@ HorizonSums& HorizonSums::operator+=(const HorizonSums& other) {
   samples += other.samples;
   log_density += other.log_density;
   squared_error += other.squared_error;
+  inside += other.inside;
   return *this;
 }
 
@@ -96,6 +99,7 @@ std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
       ++sum.samples;
       sum.log_density += value;
       sum.squared_error += error.col(k).array().square();
+      sum.inside += static_cast<double>(((run.pit[h].col(k).array() - 0.5).abs() <= 0.475).count());
     }
   }
   return sums;
@@ -106,7 +110,9 @@ std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std:
   std::vector<HorizonRow> rows;
   const auto add_row = [&](Role role, const std::string& run, const HorizonSums& of) {
     const double N = of.samples > 0 ? static_cast<double>(of.samples) : not_a_number;
-    rows.push_back({filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt()});
+    const double inside = of.inside / (N * static_cast<double>(of.squared_error.size()));
+    rows.push_back(
+        {filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt(), inside});
   };
   for (const Role role : {Role::train, Role::test}) {
     std::vector<HorizonSums> pooled;

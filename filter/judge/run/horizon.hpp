@@ -6,6 +6,7 @@
 
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
 namespace modebank {
@@ -16,6 +17,7 @@ namespace modebank {
 struct HorizonEvaluation {
   std::vector<Eigen::Index> horizons;  ///< samples ahead, ascending
   std::vector<Eigen::MatrixXd> error;  ///< per horizon n_y x N: measurement minus combined prediction
+  std::vector<Eigen::MatrixXd> pit;    ///< per horizon n_y x N: P(y_i <= measurement) of each signal by itself
   Eigen::MatrixXd log_density;         ///< horizons x N: log predictive density of the measurement [nats]
 };
 
@@ -32,11 +34,12 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
 struct HorizonRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;           ///< name of the run; "*": all runs of the role pooled
-  Eigen::Index horizon = 1;  ///< samples ahead
-  Eigen::Index samples = 0;  ///< scored samples
-  double log_score = 0.0;    ///< mean log predictive density [nats/sample]
-  Eigen::VectorXd rmse;      ///< n_y [state unit]
+  std::string run;                    ///< name of the run; "*": all runs of the role pooled
+  Eigen::Index horizon = 1;           ///< samples ahead
+  Eigen::Index samples = 0;           ///< scored samples
+  double log_score = 0.0;             ///< mean log predictive density [nats/sample]
+  Eigen::VectorXd rmse;               ///< n_y [state unit]
+  double coverage_95 = not_a_number;  ///< share of the signals inside the central 95 % band
 };
 
 /// Sums over the scored samples of one or more runs at one horizon.
@@ -45,13 +48,14 @@ struct HorizonSums {
   Eigen::Index samples = 0;
   double log_density = 0.0;
   Eigen::ArrayXd squared_error;  ///< n_y
+  double inside = 0.0;           ///< number of signals inside the central 95 % band
 
   HorizonSums& operator+=(const HorizonSums& other);
 };
 /// The sums of a run, one element per horizon.
 std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run);
 
-/// Rows of one filter in the order of summarize(), each with all horizons. `sums`: the sums of every run.
+/// Rows of one filter in the order of summarize_free_runs(), each with all horizons. `sums`: the sums of every run.
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
                                            const std::vector<std::vector<HorizonSums>>& sums);
 

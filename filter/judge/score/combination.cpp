@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/judge/run/forecast.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
 #include "ident/base/distributions.hpp"
 #include "modebank/filter/forecast_weights.hpp"
 
@@ -62,9 +62,13 @@ class CombinedHorizon {
     const std::vector<double> spoken = ForecastWeights::spoken_weights(weights, said_);
     auto error = out.predictions.error[horizon_].col(k);
     error.setZero();
+    auto pit = out.predictions.pit[horizon_].col(k);
+    pit.setZero();
     for (std::size_t i = 0; i < members_.size(); ++i) {
       out.weight[horizon_](static_cast<Index>(i), k) = spoken[i];
-      if (spoken[i] > 0.0) error += spoken[i] * members_[i]->error[horizon_].col(k);
+      if (!(spoken[i] > 0.0)) continue;
+      error += spoken[i] * members_[i]->error[horizon_].col(k);
+      pit += spoken[i] * members_[i]->pit[horizon_].col(k);
     }
   }
 };

@@ -60,8 +60,7 @@ std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& ro
                                                const std::vector<Eigen::Index>& horizons,
                                                const std::vector<std::string>& filters);
 
-/// Starting weights of `filters` (the bank first) at one horizon; empty if no row has the horizon. From archives
-/// without starting weights, mean weights are returned.
+/// Starting weights of `filters` (the bank first) at one horizon; empty if no row has the horizon.
 std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Eigen::Index horizon,
                                   const std::vector<std::string>& filters);
 

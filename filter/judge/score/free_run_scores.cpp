@@ -3,7 +3,7 @@
 #include <optional>
 
 #include "filter/judge/run/free_run.hpp"
-#include "filter/judge/score/coverage.hpp"
+#include "filter/judge/score/squared_distances.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {

@@ -7,7 +7,6 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "filter/judge/score/coverage.hpp"
 #include "filter/judge/score/squared_distances.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -98,9 +97,8 @@ class ScoreSums {
 
 }  // namespace
 
-std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
-                                       const std::vector<RunEvaluation>& evaluations,
-                                       const std::vector<RunScores>& scores) {
+std::vector<SummaryRow> summarize(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
+                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
   if (runs.size() != evaluations.size() || runs.size() != scores.size())
     throw std::invalid_argument(std::to_string(runs.size()) + " runs, but " + std::to_string(evaluations.size()) +
                                 " evaluations and " + std::to_string(scores.size()) + " of them scored");
@@ -121,51 +119,6 @@ std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, con
     pooled->add(evaluations[i], scores[i]);
   }
   if (pooled) add_row(*pooled, "*");
-  return rows;
-}
-
-std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
-                                  const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
-  std::vector<SummaryRow> rows = summarize_role(filter, Role::train, runs, evaluations, scores);
-  const std::vector<SummaryRow> held_out = summarize_role(filter, Role::test, runs, evaluations, scores);
-  rows.insert(rows.end(), held_out.begin(), held_out.end());
-  return rows;
-}
-
-namespace {
-
-struct MeanScore {
-  double value = not_a_number;
-  Index samples = 0;
-};
-
-/// Mean log score over the samples with a prediction, as in the summary.
-MeanScore mean_log_score(const Bank& bank, const Recording& recording, Role role, const FilterOptions& options) {
-  double sum = 0.0;
-  Index scored = 0;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != role) continue;
-    for (const double score : log_densities(bank, run, options)) {
-      if (std::isnan(score)) continue;
-      sum += score;
-      ++scored;
-    }
-  }
-  return {scored > 0 ? sum / static_cast<double>(scored) : not_a_number, scored};
-}
-
-}  // namespace
-
-std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Index components,
-                                       const Recording& recording, const FilterOptions& options) {
-  std::vector<MergingCost> rows;
-  for (const Role role : {Role::train, Role::test}) {
-    if (recording.transitions(role) == 0) continue;
-    const MeanScore before = mean_log_score(unlimited, recording, role, options),
-                    after = mean_log_score(limited, recording, role, options);
-    rows.push_back({role, components, unlimited.mode_count(), limited.mode_count(), after.samples, before.value,
-                    after.value, before.value - after.value});
-  }
   return rows;
 }
 

@@ -32,30 +32,10 @@ struct SummaryRow {
                               ///< method
 };
 
-/// Rows of one filter: each run of the role in order, then the pooled "*" row; training runs first. A role without runs
-/// has no rows. `scores`: scores of the evaluations (score_runs).
-std::vector<SummaryRow> summarize(const std::string& filter, const std::vector<Trajectory>& runs,
+/// Rows of one filter: each run of the role in order, then the pooled "*" row. Without runs there are no rows. Only the
+/// runs of this role need an evaluation. `scores`: scores of the evaluations (score_runs).
+std::vector<SummaryRow> summarize(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores);
-/// The rows of one role. Only the runs of this role need an evaluation.
-std::vector<SummaryRow> summarize_role(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
-                                       const std::vector<RunEvaluation>& evaluations,
-                                       const std::vector<RunScores>& scores);
-
-/// Cost of a limit on the number of modes, for the runs of one role. One row of /bank/merged.
-struct MergingCost {
-  Role role = Role::train;
-  Eigen::Index components = 0;       ///< number of components of the mixture before merging
-  Eigen::Index modes_unlimited = 0;  ///< number of modes of the bank without the limit
-  Eigen::Index modes = 0;            ///< number of modes of the bank with the limit
-  Eigen::Index samples = 0;          ///< scored samples
-  double log_score_unlimited = 0.0;  ///< mean log predictive density [nats/sample]
-  double log_score = 0.0;
-  double loss = 0.0;  ///< loss of log score due to the limit; negative if the limit helps
-};
-
-/// One row per role that has runs. `components`: number of components of the mixture of both banks.
-std::vector<MergingCost> merging_costs(const Bank& unlimited, const Bank& limited, Eigen::Index components,
-                                       const Recording& recording, const FilterOptions& options);
 
 /// Which values of a score are good. With `nominal`, a correct model has the nominal value, and values near it are
 /// good.

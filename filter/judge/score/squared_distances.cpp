@@ -25,6 +25,9 @@ SeriesByRun deviations(const SquaredDistances& d) {
   return result;
 }
 
+/// Dispersion of the distances: their variance about the expected sizes, divided by that of chi-square terms with the
+/// same mean and degrees. It is 1 for a correct model with single Gaussian predictions. It is larger if a few terms are
+/// large, for example with rare and distant modes. A factor on all distances does not change it. 1 without variance.
 double dispersion(const SquaredDistances& distances, const SeriesByRun& deviations) {
   const double mean = mean_per_degree(distances);
   double squares = 0.0;
@@ -52,8 +55,6 @@ Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample
 
 double mean_distance(const SquaredDistances& distances, double of_all) { return of_all * mean_per_degree(distances); }
 
-double dispersion(const SquaredDistances& distances) { return dispersion(distances, deviations(distances)); }
-
 Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level) {
   const double count = sample_count(distances.value);
   if (count == 0.0) return {not_a_number, not_a_number};
@@ -75,6 +76,24 @@ Eigen::VectorXd nis_of_all_signals(const RunEvaluation& e) {
     if (beyond > 0.0) nis(k) = chi_square_upper_quantile(beyond, static_cast<double>(all));
   }
   return nis;
+}
+
+Interval binomial_interval(double count, double samples, double level) {
+  if (!(samples > 0.0)) return {not_a_number, not_a_number};
+  const double misses = std::max(0.0, samples - count), beyond = 0.5 * (1.0 - level);
+  return {count > 0.0 ? beta_quantile(beyond, count, misses + 1.0) : 0.0,
+          misses > 0.0 ? beta_quantile(1.0 - beyond, count + 1.0, misses) : 1.0};
+}
+
+ScoreBands::ScoreBands()
+    : near_square_(chi_square_quantile(true_tail, 1.0)), far_square_(chi_square_quantile(1.0 - true_tail, 1.0)) {
+  for (std::size_t b = 0; b < edges_.size(); ++b) edges_[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
+}
+
+ScoreBands::Hits ScoreBands::of(double z) const {
+  Hits hits{{}, z * z > far_square_, z * z < near_square_};
+  for (std::size_t b = 0; b < edges_.size(); ++b) hits.outside[b] = std::abs(z) > edges_[b];
+  return hits;
 }
 
 }  // namespace modebank

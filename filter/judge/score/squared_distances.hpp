@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <cstddef>
 
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/score/statistics.hpp"
@@ -31,12 +33,6 @@ Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample
 /// samples.
 double mean_distance(const SquaredDistances& distances, double of_all);
 
-/// Dispersion of the distances. Computes their variance about the expected sizes, and the variance of chi-square terms
-/// with the same mean and degrees. The dispersion is the ratio of the two. It is 1 for a correct model with single
-/// Gaussian predictions. It is larger if a few terms are large, for example with rare and distant modes. A factor on
-/// all distances does not change it. 1 without values or variance.
-double dispersion(const SquaredDistances& distances);
-
 /// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.
 /// Its degrees are divided by the autocorrelation time of the distances about their share of the mean, with a margin
 /// (cautious_time). If a single distance is not `chi_square`, the degrees are also divided by the dispersion (matching
@@ -46,5 +42,32 @@ Interval mean_distance_interval(const SquaredDistances& distances, double of_all
 /// NIS of every sample on the scale of all signals, N. So one region applies to all samples. If signals are missing,
 /// the NIS is converted to the value for all signals with the same tail probability. NaN if no signal was measured.
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& evaluation);
+
+/// Levels of the central bands whose coverage is counted, and the level that decides.
+inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
+inline constexpr std::size_t deciding_level = 2;
+
+/// Probability of each of the two tails if the model is correct.
+inline constexpr double true_tail = 0.025;
+
+/// Classifies a normal score z by bands and tails. All counts of coverage and tails use it.
+class ScoreBands {
+ public:
+  struct Hits {
+    std::array<bool, coverage_levels.size()> outside;  ///< whether |z| lies outside each central band
+    bool far, close;                                   ///< whether z^2 is above the upper, or below the lower true_tail
+                                                       ///< quantile of chi-square(1)
+  };
+  ScoreBands();
+  Hits of(double z) const;
+
+ private:
+  std::array<double, coverage_levels.size()> edges_{};  ///< limits of |z|: normal quantiles
+  double near_square_, far_square_;
+};
+
+/// Confidence limits of a probability from `count` successes in `samples` independent trials (Clopper & Pearson 1934).
+/// Fractional counts are allowed. NaN without samples.
+Interval binomial_interval(double count, double samples, double level = 0.95);
 
 }  // namespace modebank

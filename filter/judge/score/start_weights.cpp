@@ -15,7 +15,7 @@ std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Index
   for (const std::string& filter : filters)
     for (const CombinationRow& row : rows) {
       if (row.role != Role::train || row.horizon != horizon || row.filter != filter) continue;
-      weights.push_back(std::isnan(row.start) ? row.weight : row.start);
+      weights.push_back(row.start);
       break;
     }
   if (weights.size() != filters.size()) return {};

@@ -53,8 +53,6 @@ ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, c
 
 namespace {
 
-constexpr Eigen::Index most_lags = 20;
-
 /// The runs of a series, relative to the mean of all runs.
 class CentredSeries {
  public:
@@ -103,7 +101,8 @@ double kolmogorov_distance(std::vector<double> values) {
 
 double ljung_box_p(const std::vector<double>& series) {
   const CentredSeries centred({series});
-  const Eigen::Index N = static_cast<Eigen::Index>(series.size()), lags = std::min<Eigen::Index>(most_lags, N / 5);
+  const Eigen::Index N = static_cast<Eigen::Index>(series.size()),
+                     lags = std::min<Eigen::Index>(most_tested_lags, N / 5);
   const double variance = centred.autocovariance(0);
   if (lags < 1 || !(variance > 0.0)) return not_a_number;
   Eigen::VectorXd autocorrelation(lags + 1);
@@ -196,11 +195,11 @@ double mean_of(const SeriesByRun& series) {
   return count > 0.0 ? sum_of(series) / count : not_a_number;
 }
 
-Autocorrelation largest_autocorrelation(const SeriesByRun& series) {
+Autocorrelation largest_autocorrelation(const SeriesByRun& series, Eigen::Index most) {
   const CentredSeries centred(series);
   Autocorrelation largest;
   const double variance = centred.autocovariance(0);
-  const auto lags = std::min<Eigen::Index>(most_lags, static_cast<Eigen::Index>(sample_count(series)) / 5);
+  const auto lags = std::min(most, static_cast<Eigen::Index>(sample_count(series)) / 5);
   for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
     if (const double value = centred.autocovariance(lag) / variance; std::abs(value) > std::abs(largest.value))
       largest = {lag, value};

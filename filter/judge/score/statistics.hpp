@@ -53,14 +53,17 @@ double sum_of(const SeriesByRun& series);
 /// Mean over all values; NaN without values.
 double mean_of(const SeriesByRun& series);
 
+/// Largest lag of the tests of autocorrelation.
+inline constexpr Eigen::Index most_tested_lags = 20;
+
 /// An autocorrelation and its lag.
 struct Autocorrelation {
   Eigen::Index lag = 0;
   double value = 0.0;
 };
-/// The autocorrelation of largest absolute value at lags 1 to min(20, N / 5), over all series together. The result has
-/// lag 0 if the series are too short.
-Autocorrelation largest_autocorrelation(const SeriesByRun& series);
+/// The autocorrelation of largest absolute value at lags 1 to min(most, N / 5), over all series together. The result
+/// has lag 0 if the series are too short.
+Autocorrelation largest_autocorrelation(const SeriesByRun& series, Eigen::Index most = most_tested_lags);
 
 /// Autocorrelation time, at least 1: variance of the mean, divided by its variance for independent terms (initial
 /// positive sequence: Geyer 1992, Statistical Science 7). NaN without values.

@@ -82,7 +82,6 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
   for (const Trajectory& run : recording.runs) times.push_back(&run.time_s);
   const LearningOptions learning = learning_of(options, !own && is_linear(options.window));
   learn_all(recording, learning, Stage::bank, step_scatter(times) > most_step_scatter, hooks, Progress(), learned);
-  origin.windows = learned.windows->audit;
   origin.features = learned.mixture->feature_names;
   origin.mixture = from_internal(learned.mixture->mixture);
   origin.candidates = learned.mixture->candidates;

@@ -3,21 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/judge/score/scores.hpp"
 #include "filter/learn/chain/stages.hpp"
-#include "filter/learn/from_mixture/passing_windows.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/fit_windows.hpp"
 
 namespace modebank {
 namespace {
-
-/// Learns the bank, and refines it if the options require.
-Refinement learn_wanted(const LearnedFrom& from, const BankInputs& inputs, const BankOptions& options) {
-  return learn_as_asked(from.recording, from.windows, from.mixture, options, from.baseline.R, inputs.filter,
-                        from.motion);
-}
 
 void tell_of_shrinking(const std::string& whose, const Bank& bank, const Progress& progress) {
   if (bank.shrinking.modes > 0) progress.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
@@ -70,46 +62,20 @@ void tell_of(const Refinement& refined, const Progress& progress) {
     progress.progress("refine: fit to predictions up to bank.look_ahead samples ahead: " + worth_of(ahead));
 }
 
-/// Warns about modes that the mixture made from windows between two other modes. Refinement separates such windows.
-void warn_of_passing_modes(const LearnedFrom& from, const Bank& bank, const Progress& progress) {
-  constexpr double most = 0.75;  // if labels flicker, about half of a true mode's windows seem to lie between other
-                                 // modes
-  const Eigen::VectorXd shares = passing_shares(from.windows, from.mixture);
-  for (Index k = 0; k < shares.size(); ++k) {
-    const bool screened = std::any_of(bank.screened.begin(), bank.screened.end(),
-                                      [&](const ScreenedMode& mode) { return mode.component == k; });
-    if (shares(k) > most && !screened)
-      progress.warning(
-          fmt::format("bank: component {} may not be a mode of motion: {:.0f} % of its windows seem to contain a "
-                      "switch between other modes (bank.refine = em separates such windows)",
-                      k, 100.0 * shares(k)));
-  }
-}
-
 }  // namespace
 
 Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const Progress& progress) {
   if (inputs.one_model) return {from.baseline, {}, {}, {}, {}};
-  Refinement refined = learn_wanted(from, inputs, inputs.bank);
+  Refinement refined = learn_as_asked(from.recording, from.windows, from.mixture, inputs.bank, from.baseline.R,
+                                      inputs.filter, from.motion);
   if (inputs.bank.refine == Refine::none)
     progress.progress(
         fmt::format("bank: modes of model {} come from the mixture, without refinement", from.windows.model));
-  if (inputs.bank.refine == Refine::none) warn_of_passing_modes(from, refined.bank, progress);
   tell_of(refined, progress);
   if (const Index learned_from = refined.learned_transitions; learned_from > 0)
     progress.progress(
         fmt::format("refine: learned {}", learned_words(learned_from, from.recording.transitions(Role::train))));
   return refined;
-}
-
-/// Measures the cost of a limit on the number of modes: learns the same bank without the limit.
-std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited) {
-  const Index components = from.mixture.mixture.components();
-  if (inputs.bank.modes == 0 || components <= inputs.bank.modes) return {};
-  BankOptions unlimited = inputs.bank;
-  unlimited.modes = 0;
-  const Bank whole = learn_wanted(from, inputs, unlimited).bank;
-  return merging_costs(whole, limited, components, from.recording, inputs.filter.value());
 }
 
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const BankInputs& inputs,

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "filter/learn/chain/training_check.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/fit/window_length.hpp"
 
 namespace modebank {
@@ -85,7 +86,6 @@ class Run {
     Refinement refined = learn_modes(from, asked, progress_);
     if (hooks_.refined) hooks_.refined(refined);
     BankPart part;
-    part.merging = asked.one_model ? std::vector<MergingCost>() : merging_of(from, asked, refined.bank);
     if (asked.bank.refine == Refine::em && !asked.one_model) part.unrefined = std::move(refined.start);
     part.measured_fit = refined.measurement.end;
     part.learned_transitions = refined.learned_transitions;
@@ -102,10 +102,21 @@ class Run {
   }
 };
 
+/// Decides on the constant of linear models. Before lags are known, the structure has a few more than most plants.
+LearningOptions with_intercept(const Recording& recording, LearningOptions options) {
+  if (!options.automatic_windows.intercept || !is_linear(options.window)) return options;
+  constexpr Index lags = 4, input_lags = 8;
+  LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options.window);
+  if (options.searched_lags.state) structure.state_lags = lags;
+  if (options.searched_lags.input) structure.input_lags = input_lags;
+  options.window.intercept = needs_constant(recording, structure);
+  return options;
+}
+
 /// Sets the options that must be found from the data.
 LearningOptions found_in(const Recording& recording, LearningOptions options,
                          const std::optional<FoundStructure>& structure) {
-  if (structure) options = with_structure(options, *structure);
+  if (structure) options = with_structure(options, *structure, recording.input_count());
   if (options.automatic_windows.length) options.window.length = automatic_length(recording, options.window);
   if (options.automatic_windows.step) options.window.step = automatic_step(recording);
   return options;
@@ -113,10 +124,11 @@ LearningOptions found_in(const Recording& recording, LearningOptions options,
 
 }  // namespace
 
-void learn_all(const Recording& recording, const LearningOptions& options, Stage last, bool one_model,
+void learn_all(const Recording& recording, const LearningOptions& asked, Stage last, bool one_model,
                const LearningHooks& hooks, const Progress& progress, Learning& learned) {
   if (last < Stage::structure) return;
   refuse_constant_states(recording);
+  const LearningOptions options = with_intercept(recording, asked);
   Run run(recording, hooks, progress, learned);
   LearningInputs inputs = learning_inputs(options);
   if (inputs.structure && one_model) inputs.structure->with_modes = false;
@@ -124,6 +136,8 @@ void learn_all(const Recording& recording, const LearningOptions& options, Stage
   if (last < Stage::windows) return;
   inputs = learning_inputs(found_in(recording, options, learned.structure));
   run.identify(inputs);
+  if (last < Stage::bank && inputs.competitors.single)
+    learned.baseline = learn_single(recording, *inputs.competitors.single);
   if (last >= Stage::mixture) run.cluster(inputs);
   if (last < Stage::bank) return;
   run.learn_competitors(inputs);

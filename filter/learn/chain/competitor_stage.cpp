@@ -1,8 +1,10 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "filter/learn/chain/armax_bank.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
@@ -30,7 +32,7 @@ OneModel one_model(const Recording& recording, const WindowFits& windows, const 
   OneModel one{windows.model, windows.structure, {}};
   if (lags)
     one.structure = {one.structure.states, one.structure.inputs, one.structure.intercept,
-                     (*lags)[0],           (*lags)[1],           (*lags)[2]};
+                     (*lags)[0],           (*lags)[1],           one.structure.input_delay.with_latest((*lags)[2])};
   const bool of_windows = one.structure == windows.structure;
   one.global = of_windows ? linear_global(recording, windows, motion) : fit_global(recording, one.structure);
   if (!of_windows) one.model = one.structure.lagged() ? "varx" : "linear";
@@ -67,7 +69,7 @@ NoiseFactor noise_factor(const Recording& recording, const LinearStructure& stru
 }
 
 std::string lags_of(const LinearStructure& s) {
-  return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, s.input_delay);
+  return fmt::format("({}, {}, {})", s.state_lags, s.input_lags, fmt::join(s.input_delay.listed(), " "));
 }
 
 /// Fits the terms given in the configuration, even if they do not gain.
@@ -113,18 +115,30 @@ std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure&
   return bank;
 }
 
-}  // namespace
-
+/// The baseline: one Kalman filter on the global model. `filter`: options of the competitors' filter.
 Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
                          const Progress& progress) {
   Baseline baseline = learn_baseline(recording, of.global, of.structure);
   baseline.bank.model = of.model;
+  if (of.structure.inputs > 0)
+    baseline.bank.modes.front().response =
+        step_response(of.structure, of.global.theta, of.global.covariance,
+                      of.structure.input_delay.by_input(of.structure.inputs), baseline.bank.dt_s);
   if (baseline.at_bound) progress.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged)
     progress.warning("baseline: the search for its noise did not reach a maximum of the likelihood");
   if (filter.noise == FilterNoise::adaptive)
     baseline.bank.noise_adaptation = most_likely_adaptation(baseline.bank, recording, filter, refine_tuning);
   return std::move(baseline.bank);
+}
+
+}  // namespace
+
+std::optional<Bank> learn_single(const Recording& recording, const SingleModel& single) {
+  std::optional<Eigen::VectorXd> R;
+  if (single.measurement_variance)
+    R.emplace(Eigen::VectorXd::Constant(recording.state_count(), *single.measurement_variance));
+  return learn_armax(recording, single.structure, R);
 }
 
 CompetitorsPart learn_competitors(const Recording& all, const WindowFits& windows, const MotionModel* motion,
@@ -136,11 +150,14 @@ CompetitorsPart learn_competitors(const Recording& all, const WindowFits& window
                                   learned_words(part->transitions(Role::train), all.transitions(Role::train))));
   const OneModel linear = one_model(recording, windows, motion, inputs.linear);
   CompetitorsPart learned;
-  learned.baseline = learn_single_filter(recording, linear, inputs.filter, progress);
+  if (inputs.single) learned.baseline = learn_single(recording, *inputs.single);
+  if (!learned.baseline) learned.baseline = learn_single_filter(recording, linear, inputs.filter, progress);
   if (inputs.all)
     learned.drifting = drifting(recording, one_model(recording, windows, motion, inputs.drifting), inputs, progress);
   const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, progress);
-  learned.noise_only = learn_noise_only(recording, linear.structure, learned.baseline->R, factor);
+  learned.noise_only = inputs.single && factor.empty()
+                           ? noise_levels_of(*learned.baseline, recording)
+                           : learn_noise_only(recording, linear.structure, learned.baseline->R, factor);
   if (inputs.filter.noise == FilterNoise::adaptive)
     learned.noise_only->noise_adaptation =
         most_likely_adaptation(*learned.noise_only, recording, inputs.filter, refine_tuning);

@@ -10,14 +10,19 @@
 namespace modebank {
 namespace {
 
+std::optional<SingleModel> single_model(const LearningOptions& options) {
+  if (!options.other_lags.armax) return {};
+  return SingleModel{*options.other_lags.armax, options.bank.measurement_variance};
+}
+
 BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window) {
   BankInputs inputs{window, options.bank, options.filter.variant == FilterVariant::kf, {}};
+  inputs.single = single_model(options);
   inputs.terms_stated = lists_terms(options.terms);
   inputs.bank.em.seed = options.seed;
   inputs.bank.em.most_modes = most_components(options.mixture.selection);
   inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // equal inputs must give equal keys
-  const bool runs_the_filter = inputs.bank.refine == Refine::em || options.bank.modes > 0;
-  if (runs_the_filter && !inputs.one_model) inputs.filter = options.filter;
+  if (inputs.bank.refine == Refine::em && !inputs.one_model) inputs.filter = options.filter;
   return inputs;
 }
 
@@ -47,6 +52,7 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
           options.other_lags.linear,
           options.other_lags.drifting,
           noise_by_input(options, window),
+          single_model(options),
           options.competitors};
 }
 

@@ -21,6 +21,12 @@ struct MixtureInputs {
   std::uint64_t seed = 1;
 };
 
+/// The linear stage's structure, and R where the configuration states it.
+struct SingleModel {
+  ArmaxStructure structure;
+  std::optional<double> measurement_variance;
+};
+
 /// Inputs of the bank's competitors. Except for `one_motion`, competitors depend on the windows alone. `one_motion` has
 /// at most as many noise levels as the mixture has components.
 struct CompetitorInputs {
@@ -37,6 +43,7 @@ struct CompetitorInputs {
 
   /// Needed for the bank, and for all competitors except `baseline` and `drifting`.
   NoiseByInput noise_by_input = NoiseByInput::none;
+  std::optional<SingleModel> single = {};  ///< the linear stage's model; empty if `baseline` is least squares
   bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
 };
 
@@ -53,9 +60,9 @@ struct BankInputs {
   FitOptions window;
   BankOptions bank;        ///< bank options with the chain's seed
   bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
-  std::optional<FilterOptions> filter;  ///< set if learning uses the filter, that is for refinement and for the cost of
-                                        ///< merged modes
+  std::optional<FilterOptions> filter;             ///< set if learning uses the filter, that is for refinement
   std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter
+  std::optional<SingleModel> single = {};          ///< as in CompetitorInputs
   bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
                               ///< left out
 };

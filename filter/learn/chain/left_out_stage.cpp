@@ -40,14 +40,17 @@ Learning learned_on(const CompetitorsPart& learned, const Recording& training, c
   Learning anew;
   for (const auto& [name, banks] : of_splits) (name == "bank" ? anew.bank : anew.one_motion) = banks.at(split);
   const auto global_of = [&](const LinearStructure& structure) { return fit_global(training, structure); };
-  if (learned.baseline) {
+  if (inputs.single) anew.baseline = learn_single(training, *inputs.single);
+  if (!anew.baseline && learned.baseline) {
     anew.baseline = learned.baseline;
     const LinearStructure& structure = anew.baseline->structure;
     anew.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
   }
   if (learned.noise_only) {
-    anew.noise_only =
-        learn_noise_only(training, learned.noise_only->structure, anew.baseline->R, learned.noise_only->noise_factor);
+    anew.noise_only = inputs.single && learned.noise_only->noise_factor.empty()
+                          ? noise_levels_of(*anew.baseline, training)
+                          : learn_noise_only(training, learned.noise_only->structure, anew.baseline->R,
+                                             learned.noise_only->noise_factor);
     anew.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
   }
   if (learned.drifting)

@@ -8,6 +8,7 @@
 #include "filter/judge/score/scoring_options.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "ident/fit/options.hpp"
+#include "ident/lag/armax.hpp"
 #include "ident/lag/structure.hpp"
 #include "modebank/learn/options.hpp"
 #include "modebank/mixture/options.hpp"
@@ -16,9 +17,9 @@ namespace modebank {
 
 /// Which options of windows are derived from the data (ident/fit/window_length.hpp).
 struct AutomaticWindows {
-  bool length = false, step = false;
+  bool length = false, step = false, intercept = false;
 
-  bool any() const { return length || step; }
+  bool any() const { return length || step || intercept; }
 };
 
 /// Lags and delays of the stages. A stage without an entry has those of the windows.
@@ -26,6 +27,7 @@ struct OtherLags {
   std::optional<Lags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
   std::optional<Lags> one_motion = {};  ///< for one motion with switching noise
   std::optional<Lags> drifting = {};
+  std::optional<ArmaxStructure> armax = {};  ///< for `baseline`, in place of `linear`
 };
 
 /// All options of learning from runs. `seed` is the only seed: it replaces those in `window` and `bank`.

@@ -41,7 +41,6 @@ struct BankPart {
   MeasuredFit measured_fit = MeasuredFit::none;
   Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
   std::vector<LeftOutRow> left_out = {};  ///< present if filters were learned without some of the training runs
-  std::vector<MergingCost> merging = {};  ///< present if the limit bank.modes caused components to be merged
 };
 
 /// All results of learning from runs.

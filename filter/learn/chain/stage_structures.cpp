@@ -17,8 +17,12 @@ constexpr Index most_asked_transitions = 20000, most_equal_lags = 8, most_equal_
 constexpr double least_drifting_gain = 0.02;  // [nats/sample]
 
 LinearStructure structure_of(const StructureScore& s, const Recording& recording, const FitOptions& window) {
-  return {
-      recording.state_count(), recording.input_count(), window.intercept, s.state_lags, s.input_lags, s.input_delay};
+  return {recording.state_count(),
+          recording.input_count(),
+          window.intercept,
+          s.state_lags,
+          s.input_lags,
+          window.input_delay.with_latest(s.input_delay)};
 }
 
 using Rows = std::vector<StructureScore>;
@@ -33,10 +37,13 @@ void mark(Rows& rows, Flag flag, std::size_t at) {
   rows[at].*flag = true;
 }
 
+/// Whether the model takes states as measured exactly, in levels.
+bool is_exact(const StructureScore& s) { return s.noise_lags == 0 && !s.differences; }
+
 /// Position of these lags in the table. Lags that are missing are added without a score.
 std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index delay) {
   const auto found = std::find_if(rows.begin(), rows.end(), [&](const StructureScore& s) {
-    return s.state_lags == state_lags && s.input_lags == input_lags && s.input_delay == delay;
+    return is_exact(s) && s.state_lags == state_lags && s.input_lags == input_lags && s.input_delay == delay;
   });
   if (found != rows.end()) return static_cast<std::size_t>(found - rows.begin());
   StructureScore added{state_lags, input_lags, delay, not_a_number, not_a_number, not_a_number};
@@ -83,12 +90,13 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
   DriftingGrid constant = coarse_drifting_grid();
   constant.q = constant.p0 = {0.0};
   constant.leak = {1.0};
-  StructureScore& of_linear = marked(candidates, &StructureScore::linear);
+  StructureScore& of_linear = marked(candidates, &StructureScore::drifting);
   of_linear.drifting_score = score(of_linear, coarse_drifting_grid());
   if (!(of_linear.drifting_score >= score(of_linear, constant) + least_drifting_gain)) return;
   double highest = of_linear.drifting_score;
   for (StructureScore& c : candidates) {
-    if (!c.linear) c.drifting_score = score(c, coarse_drifting_grid());
+    if (!is_exact(c)) continue;
+    if (!c.drifting) c.drifting_score = score(c, coarse_drifting_grid());
     highest = std::max(highest, c.drifting_score);
   }
   const double slack = loss_by_chance(static_cast<double>(transitions));
@@ -105,12 +113,12 @@ void let_drifting_choose(const Recording& recording, const StructureInputs& inpu
 
 /// Marks the rows that modes use.
 void let_modes_choose(const Recording& recording, const StructureInputs& inputs,
-                      const std::vector<std::size_t>& positions, bool one_theta, Rows& rows) {
+                      const std::vector<std::size_t>& positions, std::size_t incumbent, bool one_theta, Rows& rows) {
   std::vector<LinearStructure> structures;
   for (const std::size_t at : positions) structures.push_back(structure_of(rows[at], recording, inputs.window));
-  const auto linear = std::find_if(positions.begin(), positions.end(), [&](std::size_t at) { return rows[at].linear; });
-  const StructuresOfModes compared = compare_structures(
-      recording, structures, static_cast<std::size_t>(linear - positions.begin()), one_theta, inputs.window.seed);
+  const auto at = std::find(positions.begin(), positions.end(), incumbent) - positions.begin();
+  const StructuresOfModes compared =
+      compare_structures(recording, structures, static_cast<std::size_t>(at), one_theta, inputs.window.seed);
   for (std::size_t i = 0; i < positions.size(); ++i)
     rows[positions[i]].*(one_theta ? &StructureScore::one_motion_score : &StructureScore::modes_score) =
         compared.scores[i];
@@ -122,22 +130,27 @@ void let_modes_choose(const Recording& recording, const StructureInputs& inputs,
 void choose_for_stages(const Recording& recording, const StructureInputs& inputs, FoundStructure& found) {
   Rows& rows = found.scores;
   if (rows.empty()) return;
-  StructureScore& of_linear = marked(rows, &StructureScore::chosen);
-  of_linear.linear = of_linear.one_motion = of_linear.drifting = true;
+  marked(rows, &StructureScore::chosen).linear = true;
+  const StructureScore of_linear = marked(rows, &StructureScore::linear);
+  const Index more = of_linear.differences ? 1 : 0;
+  const std::size_t exact =
+      position_of(rows, of_linear.state_lags + more, of_linear.input_lags + more, of_linear.input_delay);
+  for (const Flag flag : {&StructureScore::chosen, &StructureScore::one_motion, &StructureScore::drifting})
+    mark(rows, flag, exact);
   let_drifting_choose(recording, inputs, rows);
   std::vector<std::size_t> positions = positions_of_equal(rows, most_equal_lags_of_modes, inputs.searched);
-  for (const Flag flag : {&StructureScore::linear, &StructureScore::drifting}) {
+  for (const Flag flag : {&StructureScore::chosen, &StructureScore::drifting}) {
     const auto at = static_cast<std::size_t>(&marked(rows, flag) - rows.data());
     if (std::find(positions.begin(), positions.end(), at) == positions.end()) positions.push_back(at);
   }
   if (inputs.with_modes) {
-    let_modes_choose(recording, inputs, positions, false, rows);
-    let_modes_choose(recording, inputs, positions, true, rows);
+    let_modes_choose(recording, inputs, positions, exact, false, rows);
+    let_modes_choose(recording, inputs, positions, exact, true, rows);
   }
   const StructureScore& chosen = marked(rows, &StructureScore::chosen);
   found.state_lags = chosen.state_lags;
   found.input_lags = chosen.input_lags;
-  found.input_delay = chosen.input_delay;
+  found.input_delay = inputs.window.input_delay.with_latest(chosen.input_delay);
 }
 
 }  // namespace modebank

@@ -20,7 +20,7 @@ namespace modebank {
 /// The lags and the delay of one linear model of the training runs (ident/lag/structure_search.hpp).
 FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Progress& progress);
 /// The options with the found structure, marked as the result of a search.
-LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found);
+LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found, Index inputs);
 
 MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
                       const Progress& progress);
@@ -39,9 +39,8 @@ struct OneModel {
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags);
 
-/// The baseline: one Kalman filter on the global model. `filter`: options of the competitors' filter.
-Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
-                         const Progress& progress);
+/// The baseline of the linear stage; empty where the training runs are too short for it.
+std::optional<Bank> learn_single(const Recording& recording, const SingleModel& single);
 
 CompetitorsPart learn_competitors(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                                   const CompetitorInputs& inputs, const Progress& progress);
@@ -62,9 +61,6 @@ Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const 
 /// the bank.
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
                             const Progress& progress);
-
-/// Measures the cost of a limit on the number of modes: learns the same bank without the limit.
-std::vector<MergingCost> merging_of(const LearnedFrom& from, const BankInputs& inputs, const Bank& limited);
 
 /// Scores of bank, competitors and their combination on the training runs. Each run is scored by filters learned
 /// without it. Empty if no run was left out. `of_splits`: banks and `one_motion` of each split. The other filters are

@@ -11,7 +11,6 @@
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -110,8 +109,7 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, Likelihoo
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   // All samples have equal weight, because this likelihood is compared with the scores of other filters.
   const Recording training = unweighted_training_part(recording);
-  if (training.transitions(Role::train) == 0)
-    throw DataError("no training run has a usable transition (two successive samples without missing values)");
+  require_transitions(training.transitions(Role::train) > 0);
   const Index n = structure.states, p = structure.parameters();
   Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
   bank.modes.push_back(make_mode(structure, global.theta, global.residual_covariance, Eigen::MatrixXd::Zero(p, p),

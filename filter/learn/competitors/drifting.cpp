@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <string>
 #include <vector>
 
 #include "filter/judge/run/drifting.hpp"
@@ -13,14 +12,12 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/step/student_noise.hpp"
 #include "ident/model/transitions.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
   const Transitions transitions = stack_training(unweighted_training_part(recording), structure);
-  if (transitions.count() == 0)
-    throw DataError("no training run has a usable transition (two successive samples without missing values)");
+  require_transitions(transitions.count() > 0);
   const Eigen::VectorXd scale =
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();
   return scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });
@@ -52,25 +49,6 @@ void take_own_variance(Bank& bank, const Recording& recording) {
   bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
 }
 
-/// Settings at the ends of the grid; their optimum may lie beyond the grid. A floor does not count if its neighbour in
-/// the grid has the same score, because the floor then has no effect.
-std::vector<std::string> grid_ends(const DriftingGrid& grid, const DriftingScores& scores, Index best) {
-  const std::array<Index, 6> at = grid.point(best), size = grid.sizes();
-  const auto last = [&](std::size_t i) { return size[i] > 1 && at[i] == size[i] - 1; };
-  const auto first = [&](std::size_t i) { return size[i] > 1 && at[i] == 0; };
-  std::vector<std::string> ends;
-  if (last(0)) ends.emplace_back("q");
-  if (last(1)) ends.emplace_back("p0");
-  if (last(2)) ends.emplace_back("leak");
-  if (first(3) || last(3)) ends.emplace_back("lam");
-  double least = 0.0;  // smallest degrees of freedom
-  for (const double nu : grid.nu) least = nu > 0.0 && (least == 0.0 || nu < least) ? nu : least;
-  if (size[4] > 1 && least > 0.0 && grid.nu[static_cast<std::size_t>(at[4])] == least) ends.emplace_back("nu");
-  const bool binds = first(5) && scores.log_score(best) > scores.log_score(best + 1);
-  if (binds || last(5)) ends.emplace_back("floor");
-  return ends;
-}
-
 void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) {
   const Index best = scores.best();
   const std::array<Index, 6> at = grid.point(best);
@@ -81,7 +59,7 @@ void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) 
   bank.running_noise.lam = chosen(grid.lam, 3);
   bank.running_noise.nu = chosen(grid.nu, 4);
   bank.running_noise.floor = chosen(grid.floor, 5) * bank.noise_variance();
-  bank.drift.tuning = {scores.log_score(best), scores.samples, grid_ends(grid, scores, best)};
+  bank.drift.tuning = {scores.log_score(best), scores.samples};
 }
 
 std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Recording& recording,
@@ -124,14 +102,11 @@ void choose_horizon_factors(Bank& bank, const Recording& recording, const std::v
   if (runs.empty()) return;
   const std::vector<Index>& ascending = runs.front().predictions.horizons;
   const StudentNoise noise(bank.running_noise.nu);
-  bool at_end = false;
   for (std::size_t h = 0; h < ascending.size(); ++h) {
     if (ascending[h] == 1) continue;
     const Index best = best_factor(noise, runs, h);
-    at_end = at_end || best == -factors_below || best == factors_above;
     bank.running_noise.horizon_factor.emplace_back(ascending[h], std::exp2(0.25 * static_cast<double>(best)));
   }
-  if (at_end) bank.drift.tuning.at_grid_end.emplace_back("horizon_factor");
 }
 
 }  // namespace

@@ -15,7 +15,6 @@
 #include "ident/base/sample_quantile.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/robust_regression.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -82,8 +81,7 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
   Bank bank = bank_frame(recording, structure, R);
   bank.noise_factor = factor;
   Transitions transitions = unweighted(stack_training(recording, structure));
-  if (transitions.count() == 0)
-    throw DataError("no training run has a usable transition (two successive samples without missing values)");
+  require_transitions(transitions.count() > 0);
   divide_by_noise(factor, structure, transitions);
   const Regression fit = regression(recording, structure, transitions);
   const Eigen::MatrixXd variances =
@@ -112,6 +110,23 @@ Bank by_intervals(Bank bank, const Recording& recording) {
 }
 
 }  // namespace
+
+Bank noise_levels_of(const Bank& single, const Recording& recording) {
+  constexpr double lowest = 0.25, step = 2.0, least_share_of_R = 0.01;
+  Bank bank = single;
+  const Index n = single.structure.states;
+  Mode mode = single.modes.front();
+  mode.response = {};
+  mode.weight = 1.0 / static_cast<double>(noise_only_levels);
+  const Eigen::VectorXd Q = single.noise_variance().cwiseMax(least_share_of_R * single.R.diagonal());
+  bank.modes.clear();
+  for (Index j = 0; j < noise_only_levels; ++j) {
+    mode.Q.diagonal().head(n) = lowest * std::pow(step, static_cast<double>(j)) * Q;
+    bank.modes.push_back(mode);
+  }
+  choose_stay(bank, recording);
+  return bank;
+}
 
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor) {

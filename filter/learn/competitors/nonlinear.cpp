@@ -12,7 +12,6 @@
 #include "ident/data/stretch.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/model/transitions.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -157,8 +156,7 @@ void add_wide_level(Bank& bank) {
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& options, const FilterOptions& filter) {
   const Recording known = with_known_terms(recording, structure, terms);
-  if (known.runs.empty())
-    throw DataError("no training run has a usable transition (two successive samples without missing values)");
+  require_transitions(!known.runs.empty());
   WindowFits frame;
   frame.structure = with_known_terms(structure, terms);
   frame.global = fit_global(known, frame.structure);

@@ -10,12 +10,13 @@
 namespace modebank {
 namespace {
 
-/// "wz", "wz[k-1]", ... `newest`: age of the newest sample; age -1 is written as [k+1].
-std::vector<std::string> lagged_names(const std::vector<std::string>& names, Index lags, Index newest) {
+/// "wz", "wz[k-1]", ... A delay of 1 means that the newest sample is that of k; age -1 is written as [k+1].
+std::vector<std::string> lagged_names(const std::vector<std::string>& names, Index lags, const InputDelays& delay) {
   std::vector<std::string> all;
   for (Index lag = 0; lag < lags; ++lag)
-    for (const std::string& name : names) {
-      const Index age = newest + lag;
+    for (Index j = 0; j < std::ssize(names); ++j) {
+      const std::string& name = names[static_cast<std::size_t>(j)];
+      const Index age = delay[j] - 1 + lag;
       all.push_back(age == 0 ? name : name + (age > 0 ? "[k-" + std::to_string(age) + "]" : "[k+1]"));
     }
   return all;
@@ -24,11 +25,11 @@ std::vector<std::string> lagged_names(const std::vector<std::string>& names, Ind
 }  // namespace
 
 std::vector<std::string> state_names(const Recording& recording, const LinearStructure& structure) {
-  return lagged_names(names_of(recording.states), structure.state_lags, 0);
+  return lagged_names(names_of(recording.states), structure.state_lags, 1);
 }
 
 std::vector<std::string> input_names(const Recording& recording, const LinearStructure& structure) {
-  return lagged_names(names_of(recording.inputs), structure.input_lags, structure.input_delay - 1);
+  return lagged_names(names_of(recording.inputs), structure.input_lags, structure.input_delay);
 }
 
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {

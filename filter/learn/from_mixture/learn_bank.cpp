@@ -178,21 +178,19 @@ std::vector<Index> all_positions(Index count) {
 
 /// One mode from all components, used if no component can be a mode. It may be unstable, like the global model that it
 /// competes with. Its predictions one step ahead may still be right. The summary warns about the instability.
-Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& whole, BankOptions options,
+Bank bank_of_all(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture, BankOptions options,
                  const Bank& without_modes, const MotionModel* motion) {
-  options.modes = 1;
   options.screen = false;
-  Bank bank = learn_bank(recording, fits, whole, options, without_modes.R, motion);
+  Bank bank = learn_bank(recording, fits, merge_components(mixture, 1), options, without_modes.R, motion);
   bank.screened = without_modes.screened;
   return bank;
 }
 
 }  // namespace
 
-Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& whole,
+Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion) {
-  check(options, fits, whole);
-  const MixtureResult mixture = options.modes > 0 ? merge_components(whole, options.modes) : whole;
+  check(options, fits, mixture);
   const GaussianMixture& components = mixture.mixture;
   const std::vector<ComponentEstimate> estimates =
       estimate_components({recording, fits, mixture, options.theta}, motion);
@@ -204,7 +202,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
     bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
   const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
                                                  : all_positions(components.components());
-  if (kept.empty()) return bank_of_all(recording, fits, whole, options, bank, motion);
+  if (kept.empty()) return bank_of_all(recording, fits, mixture, options, bank, motion);
   std::vector<ComponentEstimate> modes;
   modes.reserve(kept.size());
   for (const Index k : kept) modes.push_back(estimates[k]);
@@ -239,15 +237,13 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
     return static_cast<Index>(refine_tuning.modes_kept * static_cast<double>(modes));
   };
   for (Index modes = fewer(starts.front().mode_count()); modes >= 1; modes = fewer(modes)) {
-    of_start.modes = modes;
     of_start.screen = options.screen && modes > 1;  // a single mode is always a start; refinement decides later whether
                                                     // it is usable
-    starts.push_back(learn_bank(recording, fits, mixture, of_start, R));
+    starts.push_back(learn_bank(recording, fits, merge_components(mixture, modes), of_start, R));
   }
   RefineOptions em = options.em;
   em.screen = options.screen;
   em.state_dependent_transition = options.transition == TransitionSource::logit;
-  if (options.modes > 0) em.most_modes = std::min(em.most_modes, options.modes);
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
   const Recording& learned = part ? *part : recording;

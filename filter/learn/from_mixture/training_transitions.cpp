@@ -64,6 +64,10 @@ Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure
   return logs;
 }
 
+void require_transitions(bool any) {
+  if (!any) throw DataError("no training run has a usable transition (two successive samples without missing values)");
+}
+
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
                                                 const NoiseFactor& factor) {
   check_structure(recording, structure);
@@ -81,8 +85,7 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
   }
   all.log_noise_factor = divide_by_noise(factor, structure, all.data);
   blank_unusable(all);
-  if (all.usable.sum() == 0.0)
-    throw DataError("no training run has a usable transition (two successive samples without missing values)");
+  require_transitions(all.usable.sum() > 0.0);
   return all;
 }
 

@@ -36,6 +36,9 @@ struct TrainingTransitions {
 /// Throws std::invalid_argument if states and inputs of the structure differ from those of the recording.
 void check_structure(const Recording& recording, const LinearStructure& structure);
 
+/// Throws DataError without `any` transition of a training run.
+void require_transitions(bool any);
+
 /// Collects the training transitions. Throws the errors of check_structure, and DataError if no training run has a
 /// usable transition. `factor`: each row is divided by the square root of its factor. Least squares and
 /// expectation-maximisation then need no change.

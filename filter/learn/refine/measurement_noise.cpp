@@ -10,7 +10,6 @@
 
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
-#include "filter/learn/refine/dominating_noise.hpp"
 #include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "filter/learn/tuning.hpp"
@@ -114,23 +113,11 @@ LikelihoodMaximum maximise_everything(const LikelihoodTarget& target, const Refi
 }
 
 /// R of a bank. It comes from the search for R alone. If the theta of exact states makes R = 0 most likely, R is
-/// searched together with theta. If R dominates, theta of exact states is so wrong that both searches miss the maximum.
-/// So a third bank competes: one that starts from a single model with a large R. Each candidate is compared at its
-/// maximum over theta, Q and R.
+/// searched together with theta.
 MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, const TrainingTransitions& transitions,
-                        const GlobalModel& global, const SwitchingPrior& prior, const Bank& bank) {
+                        const SwitchingPrior& prior, const Bank& bank) {
   MeasurementNoise noise = estimate_measurement_noise(target, bank, refine_tuning);
   if (!noise.bank) noise.bank = estimate_with_theta(target, in, transitions, prior, bank);
-  const std::optional<Bank> start = start_of_dominating_noise(in, target.recording, global, bank);
-  if (!start) return noise;
-  const auto at_maximum = [&](const Bank& from) {
-    const LikelihoodTarget with_prior{target.recording, learning_filter(target.filter),
-                                      prior_with_states_unknown(prior, from, refine_tuning), in.options.one_theta};
-    return maximise_everything(with_prior, in, transitions, from, true).bank;
-  };
-  Bank dominated = at_maximum(*start);
-  const double rival = target.value(noise.bank ? at_maximum(*noise.bank) : bank);
-  if (target.value(dominated) > rival + least_rise(target)) noise.bank = std::move(dominated);
   return noise;
 }
 
@@ -151,8 +138,8 @@ class MeasuredSplits {
   void estimate_R() {
     for_each([&](const SplitData& split, Bank& bank) {
       const LikelihoodTarget target{split.runs.training, in_.filter, std::nullopt};
-      MeasurementNoise noise = find_R(target, in_, split.transitions, split.global,
-                                      prior_of_split(in_, split, exact_.start.noise_transitions), bank);
+      MeasurementNoise noise =
+          find_R(target, in_, split.transitions, prior_of_split(in_, split, exact_.start.noise_transitions), bank);
       if (noise.bank) bank = std::move(*noise.bank);
     });
   }
@@ -238,7 +225,7 @@ namespace {
 bool take_R(const RefineInput& in, const SwitchingPrior& exact, std::optional<MeasuredSplits>& splits, Fit& fit,
             MeasurementStage& stage) {
   const LikelihoodTarget target{in.recording, in.filter, std::nullopt};
-  MeasurementNoise noise = find_R(target, in, in.transitions, in.fits.global, exact, fit.bank);
+  MeasurementNoise noise = find_R(target, in, in.transitions, exact, fit.bank);
   stage.starts = noise.starts;
   stage.failed_starts = noise.failed_starts;
   if (!noise.bank) return false;

@@ -77,6 +77,37 @@ struct CombinedInnovation {
 /// Phi(x). The relative error is small far into the lower tail.
 inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
+/// A mixture of normal distributions of one signal.
+struct NormalMixture {
+  Eigen::VectorXd weight, mean, deviation;
+
+  double probability(double y) const {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < weight.size(); ++j) sum += weight(j) * normal_cdf((y - mean(j)) / deviation(j));
+    return std::min(sum, 1.0);
+  }
+  /// Quantile by bisection between the parts' own quantiles. `score`: normal quantile of the probability.
+  double quantile(double probability_below, double score) const {
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Eigen::Index j = 0; j < weight.size(); ++j) {
+      if (!(weight(j) > negligible_weight)) continue;
+      low = std::min(low, mean(j) + score * deviation(j));
+      high = std::max(high, mean(j) + score * deviation(j));
+    }
+    constexpr int most_halvings = 200;
+    constexpr double close = 1e-12;
+    for (int i = 0; i < most_halvings && high - low > close * (std::abs(low) + std::abs(high)); ++i) {
+      const double middle = 0.5 * (low + high);
+      (probability(middle) < probability_below ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+
+ private:
+  static constexpr double negligible_weight = 1e-9;  ///< smallest weight of a part that can matter at the edge of a
+                                                     ///< band
+};
+
 /// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
 /// function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is
 /// missing. `weights`: workspace, K. Overwrites step.log_likelihood.

@@ -11,13 +11,15 @@ using Eigen::Index;
 
 SampleFeed::SampleFeed(const Bank& bank)
     : inputs_(bank.structure.inputs),
-      input_delay_(bank.structure.input_delay),
+      latest_delay_(bank.structure.input_delay.latest()),
       acting_inputs_(bank.structure.acting_inputs()),
       first_transition_(bank.structure.first_transition()),
       dt_s_(bank.dt_s),
-      // The acting inputs of sample k are the `input_lags` inputs u[k-d], u[k-d-1], ..., where d is the delay.
-      recent_(Eigen::MatrixXd::Zero(inputs_, input_delay_ + bank.structure.input_lags)),
-      measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {}
+      // The acting inputs of sample k are the `input_lags` inputs u[k-d], u[k-d-1], ..., where d is the input's delay.
+      recent_(Eigen::MatrixXd::Zero(inputs_, latest_delay_ + bank.structure.input_lags)),
+      measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {
+  for (Index i = 0; i < inputs_; ++i) ahead_.push_back(latest_delay_ - bank.structure.input_delay[i]);
+}
 
 Index SampleFeed::whole_steps(double periods) {
   if (std::isnan(periods)) return 1;

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <vector>
 
 #include "filter/step/bank.hpp"
 #include "filter/step/equations/bounds.hpp"
@@ -40,7 +41,9 @@ class SampleFeed {
   /// Data for a start: the measurement. With lags, the measurements of all samples in z.
   auto start() const { return measurements_.reshaped(); }
   /// The acting inputs v of the transition to this sample.
-  Eigen::Map<const Eigen::VectorXd> inputs() const { return {recent_.data() + inputs_ * input_delay_, acting_inputs_}; }
+  Eigen::Map<const Eigen::VectorXd> inputs() const {
+    return {recent_.data() + inputs_ * latest_delay_, acting_inputs_};
+  }
 
   /// The state between two samples, for a snapshot.
   struct Memory {
@@ -54,10 +57,12 @@ class SampleFeed {
   void restore(const Memory& memory);
 
  private:
-  Eigen::Index inputs_, input_delay_, acting_inputs_, first_transition_;
+  Eigen::Index inputs_, latest_delay_, acting_inputs_, first_transition_;
   double dt_s_;
-  Eigen::MatrixXd recent_;        ///< inputs u[k], u[k-1], ...; the last columns are the acting inputs
-  Eigen::MatrixXd measurements_;  ///< newest first
+  std::vector<Eigen::Index> ahead_;  ///< m, samples by which an input acts before the latest
+  Eigen::MatrixXd recent_;           ///< inputs u[k], u[k-1], ...; u[k] is repeated for inputs that act early, so that
+                                     ///< the last columns are the acting inputs
+  Eigen::MatrixXd measurements_;     ///< newest first
   Eigen::Index samples_ = 0, whole_ = 0, steps_ = 1;
   double time_s_ = 0.0;
 
@@ -77,8 +82,11 @@ class SampleFeed {
   if (steps_ > longest_gap_steps) clear();
   shift(recent_);
   double* newest = recent_.data();
-  for (Eigen::Index i = 0; i < inputs_; ++i)
+  for (Eigen::Index i = 0; i < inputs_; ++i) {
     if (std::isfinite(input[i])) newest[i] = input[i];  // if the input is missing, its last known value acts
+    const Eigen::Index ahead = ahead_[static_cast<std::size_t>(i)];
+    for (Eigen::Index copy = 1; copy <= ahead; ++copy) newest[i + copy * inputs_] = newest[i];
+  }
   shift(measurements_);
   newest = measurements_.data();
   bool whole = true;

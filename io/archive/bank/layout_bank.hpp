@@ -20,6 +20,15 @@ void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known,
   });
 }
 
+/// - input_delay: samples from each input to its first effect, one number per input
+template <class Io, class D>
+void exchange_delays(Io& io, D& delays, Eigen::Index inputs) {
+  io.through(
+      delays, [&](const InputDelays& of) { return of.by_input(inputs); },
+      [](const std::vector<std::ptrdiff_t>& stored) { return InputDelays(stored); },
+      [&](auto& stored) { io.attribute("input_delay", stored, rule::delay); });
+}
+
 /// The kind of the model. The number of states is not read here; restore_structure gets it from the arrays.
 /// - model: `linear`, `varx` or the name of a motion model
 /// - form: A and B predict the increment of the state
@@ -27,7 +36,6 @@ void exchange_part(Io& io, const std::string& name, T& part, const Sizes& known,
 /// - inputs: number of input channels
 /// - state_lags: samples of the state that predict the next one
 /// - input_lags: samples of the input that act on one transition
-/// - input_delay: samples from an input to its first effect
 template <class Io, class S, class Name>
 void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("model", model);
@@ -36,7 +44,7 @@ void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("inputs", structure.inputs, rule::channels);
   io.attribute("state_lags", structure.state_lags, rule::lags);
   io.attribute("input_lags", structure.input_lags, rule::lags);
-  io.attribute("input_delay", structure.input_delay, rule::delay);
+  exchange_delays(io, structure.input_delay, structure.inputs);
 }
 
 /// Names and units of a motion model's parameters; empty lists for linear models.
@@ -79,6 +87,10 @@ void exchange_terms(Io& io, S& stored) {
 /// - B: matrix of the inputs; m counts lagged inputs too
 /// - Q: process noise covariance of a step
 /// - parameters: theta of each mode
+/// - steady_gain: end of the response to a unit step of each input
+/// - response_time_s: time to 63 % of that end, dead time included
+/// - settling_time_s: time after which the state stays within 5 % of that end
+/// - overshoot: by how much the peak exceeds that end, as a share of it
 /// - parameter_covariance: covariance of theta among the mode's windows
 /// - C: y = C x
 /// - R: measurement noise covariance
@@ -116,6 +128,16 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit(), rule::finite);
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(), rule::covariances);
   io.optional_field("quantum", stored.quantum, {"n_y"}, outputs, rule::not_negative);
+  if constexpr (!Io::reads) io.set_size("inputs", static_cast<std::size_t>(stored.structure.inputs));
+  const Letters over_inputs{"K", "n_y", "inputs"};
+  io.optional_field("steady_gain", stored.steady_gain, over_inputs, {}, rule::finite_or_missing);
+  io.optional_field("steady_gain_standard_error", stored.steady_gain_error, over_inputs, {}, error);
+  io.optional_field("response_time_s", stored.response_time_s, over_inputs, {"s"}, error);
+  io.optional_field("response_time_s_standard_error", stored.response_time_error_s, over_inputs, {"s"}, error);
+  io.optional_field("settling_time_s", stored.settling_time_s, over_inputs, {"s"}, error);
+  io.optional_field("settling_time_s_standard_error", stored.settling_time_error_s, over_inputs, {"s"}, error);
+  io.optional_field("overshoot", stored.overshoot, over_inputs, {}, error);
+  io.optional_field("overshoot_standard_error", stored.overshoot_error, over_inputs, {}, error);
   io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);

@@ -18,7 +18,6 @@ namespace modebank::layout {
 /// - lam: forgetting factor of the running variance
 /// - nu: degrees of freedom of the noise; 0: Gaussian
 /// - training_log_score: log score [nat] per sample of the training runs
-/// - at_grid_end: names of settings that are at the end of their grid
 /// - parameters: coefficients at the start of a run
 /// - regressor_scale: root mean square of each regressor
 /// - initial_variance: variance of the training residuals
@@ -36,7 +35,6 @@ void exchange_drifting(Io& io, B& bank, const Units& units) {
   io.attribute("nu", bank.running_noise.nu);
   io.attribute("training_log_score", bank.drift.tuning.log_score);
   io.attribute("training_samples", bank.drift.tuning.samples, rule::not_negative);
-  io.attribute_texts("at_grid_end", bank.drift.tuning.at_grid_end);
   io.attribute("q", bank.drift.rates.q);
   io.attribute("p0", bank.drift.rates.p0);
   io.attribute("leak", bank.drift.rates.leak);

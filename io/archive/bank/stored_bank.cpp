@@ -38,10 +38,10 @@ void check_count(const std::string& what, const std::vector<std::string>& names,
 void check_lags(const LinearStructure& s, Index dimension) {
   constexpr Index most_states = 1'000'000;  // upper limit, so that products of sizes do not overflow
   if (dimension < 1 || dimension > most_states || s.inputs < 0 || s.state_lags < 1 || s.input_lags < 1 ||
-      s.input_delay < 0 || dimension % s.state_lags != 0)
+      s.input_delay.earliest() < 0 || !s.input_delay.fits(s.inputs) || dimension % s.state_lags != 0)
     throw DataError(std::to_string(dimension) + " states, " + std::to_string(s.inputs) + " inputs and lags of " +
                     std::to_string(s.state_lags) + ", " + std::to_string(s.input_lags) + ", " +
-                    std::to_string(s.input_delay) + " are not possible");
+                    std::to_string(s.input_delay.latest()) + " are not possible");
 }
 
 [[noreturn]] void parameters_do_not_fit(Index parameters, Index states) {
@@ -87,6 +87,18 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, 
   visit(
       &StoredBank::bend_standard_error, "term coefficients standard error", s.states, terms,
       [](auto& mode) -> auto& { return mode.bend_standard_error; }, if_any);
+  const auto visit_response = [&](auto value, auto error, const char* what, auto number) {
+    visit(
+        value, what, s.states, s.inputs, [=](auto& mode) -> auto& { return mode.response.value.*number; }, if_any);
+    visit(
+        error, what, s.states, s.inputs, [=](auto& mode) -> auto& { return mode.response.error.*number; }, if_any);
+  };
+  visit_response(&StoredBank::steady_gain, &StoredBank::steady_gain_error, "steady gain", &StepResponse::gain);
+  visit_response(&StoredBank::response_time_s, &StoredBank::response_time_error_s, "response time",
+                 &StepResponse::response_s);
+  visit_response(&StoredBank::settling_time_s, &StoredBank::settling_time_error_s, "settling time",
+                 &StepResponse::settling_s);
+  visit_response(&StoredBank::overshoot, &StoredBank::overshoot_error, "overshoot", &StepResponse::overshoot);
   if (p_motion == 0) return;
   visit(
       &StoredBank::motion_parameters, "motion parameters", p_motion, Index{1},

@@ -58,17 +58,19 @@ void check_lags(const LinearStructure& structure, Eigen::Index dimension);
 struct StoredBank {
   std::string model;
   LinearStructure structure;
-  Eigen::MatrixXd motion_parameters;          ///< p_motion x K; empty for linear models
-  Eigen::MatrixXd motion_standard_error;      ///< p_motion x K
-  Eigen::VectorXd weight;                     ///< K
-  Eigen::MatrixXd c;                          ///< n x K
-  Eigen::MatrixXd A;                          ///< n*n x K
-  Eigen::MatrixXd B;                          ///< n*m x K
-  Eigen::MatrixXd Q;                          ///< n*n x K
-  Eigen::MatrixXd parameters;                 ///< p x K
-  Eigen::MatrixXd parameter_covariance;       ///< p*p x K; may be empty
-  Eigen::MatrixXd standard_error;             ///< p x K; may be empty
-  Eigen::MatrixXd Q_standard_error;           ///< n*n x K; may be empty
+  Eigen::MatrixXd motion_parameters;                                         ///< p_motion x K; empty for linear models
+  Eigen::MatrixXd motion_standard_error;                                     ///< p_motion x K
+  Eigen::VectorXd weight;                                                    ///< K
+  Eigen::MatrixXd c;                                                         ///< n x K
+  Eigen::MatrixXd A;                                                         ///< n*n x K
+  Eigen::MatrixXd B;                                                         ///< n*m x K
+  Eigen::MatrixXd Q;                                                         ///< n*n x K
+  Eigen::MatrixXd parameters;                                                ///< p x K
+  Eigen::MatrixXd parameter_covariance;                                      ///< p*p x K; may be empty
+  Eigen::MatrixXd standard_error;                                            ///< p x K; may be empty
+  Eigen::MatrixXd Q_standard_error;                                          ///< n*n x K; may be empty
+  Eigen::MatrixXd steady_gain, response_time_s, settling_time_s, overshoot;  ///< n_y*inputs x K; may be empty
+  Eigen::MatrixXd steady_gain_error, response_time_error_s, settling_time_error_s, overshoot_error;  ///< the same
   Eigen::MatrixXd R_standard_error;           ///< transposed; may be empty
   Eigen::MatrixXd transition_standard_error;  ///< transposed; may be empty
   Eigen::MatrixXd transition_weights;         ///< K*d x K; equal for every previous mode; may be empty

@@ -225,6 +225,8 @@ class GroupReader {
     std::string problem;
     if constexpr (std::is_same_v<Stored, std::string>)
       problem = broken_text({stored}, true);
+    else if constexpr (std::is_same_v<Stored, std::vector<std::ptrdiff_t>>)
+      problem = broken(rule, sizes_, {stored.size()}, stored.data());
     else
       problem = broken(rule, sizes_, {}, &stored);
     if (!problem.empty()) throw DataError(problem);
@@ -236,6 +238,11 @@ class GroupReader {
   void check_numbers(const hdf5::StoredArray& array, const Letters& letters, H5T_class_t kind);
   hdf5::StoredArray open_attribute(const std::string& name, H5T_class_t kind, bool scalar) const;
   void read_attribute(const std::string& name, std::string& value) const;
+  void read_attribute(const std::string& name, std::vector<std::ptrdiff_t>& values) const {
+    const hdf5::StoredArray array = open_attribute(name, H5T_INTEGER, false);
+    values.resize(array.elements());
+    if (!values.empty()) array.read(hdf5::memory_type<std::int64_t>(), values.data());
+  }
   template <class Number>
   void read_attribute(const std::string& name, Number& value) const {
     const H5T_class_t kind = std::is_floating_point_v<Number> ? H5T_FLOAT : H5T_INTEGER;

@@ -192,6 +192,10 @@ class GroupWriter {
   void write_attribute(const std::string& name, const std::string& value) {
     hdf5::write_texts(group_.id(), hdf5::Place::attribute, name, {value}, {});
   }
+  void write_attribute(const std::string& name, const std::vector<std::ptrdiff_t>& values) {
+    hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<std::int64_t>(),
+                      hdf5::memory_type<std::int64_t>(), {values.size()}, values.data());
+  }
   template <class Number>
   void write_attribute(const std::string& name, Number value) {
     hdf5::write_array(group_.id(), hdf5::Place::attribute, name, hdf5::file_type<Number>(), hdf5::memory_type<Number>(),

@@ -30,7 +30,7 @@ class StructureOfRuns : public CliTest {
   ProgramResult run_stated(const FoundStructure& found) const {
     return run({"--window.length", "10", "--window.model", "varx", "--window.state_lags",
                 std::to_string(found.state_lags), "--window.input_lags", std::to_string(found.input_lags),
-                "--window.input_delay", std::to_string(found.input_delay)});
+                "--window.input_delay", std::to_string(found.input_delay.latest())});
   }
 };
 

@@ -14,31 +14,24 @@ namespace {
 
 class Commands : public CliTest {};
 
-/// The loss is the difference of the scores in the summary, even if lags leave some samples without a score.
-TEST_F(Commands, MergingModesSaysWhatItCostsInTheSummarysScores) {
-  std::vector<std::string> options{"--window.model", "varx", "--window.state_lags", "3", "--mixture.components", "3"};
-  const auto pooled = [&](Role role) {
-    for (const SummaryRow& row : read_archive(archive()).summary)
-      if (row.filter == "bank" && row.role == role && row.run == "*") return row;
-    return SummaryRow();
-  };
-  ASSERT_EQ(run(options).status, 0);
-  EXPECT_TRUE(read_archive(archive()).merging.empty());
-  const SummaryRow before[]{pooled(Role::train), pooled(Role::test)};
-  options.insert(options.end(), {"--bank.modes", "1"});
-  const ProgramResult result = run(options);
-  ASSERT_EQ(result.status, 0) << result.err;
-  const std::vector<MergingCost> merging = read_archive(archive()).merging;
-  ASSERT_EQ(merging.size(), 2u);
-  for (const std::size_t i : {0u, 1u}) {
-    const SummaryRow after = pooled(i == 0 ? Role::train : Role::test);
-    EXPECT_EQ(merging[i].role, after.role);
-    EXPECT_EQ(merging[i].components, 3);
-    EXPECT_EQ(merging[i].modes, 1);
-    EXPECT_EQ(merging[i].samples, after.samples);
-    EXPECT_NEAR(merging[i].log_score_unlimited, before[i].log_score, 1e-10);
-    EXPECT_NEAR(merging[i].log_score, after.log_score, 1e-10);
-    EXPECT_NEAR(merging[i].loss, before[i].log_score - after.log_score, 1e-10);
+/// A system that switches between three gains, 0, 1 and 2.
+TEST_F(Commands, TheLargestNumberOfComponentsIsTheMostModesThatABankMayHave) {
+  std::mt19937_64 generator(5);
+  boost::random::normal_distribution<double> normal;
+  for (const char* name : {"run_00.csv", "run_01.csv"}) {
+    std::string text = "time,wz,left,right\n";
+    double wz = 0.0;
+    for (int k = 0; k < 600; ++k) {
+      const double left = normal(generator), right = normal(generator);
+      text += fmt::format("{:.1f},{},{},{}\n", 0.1 * k, wz, left, right);
+      wz = 0.5 * wz + (k / 100 % 3) * (right - left) + 0.01 * normal(generator);
+    }
+    write(name, text);
+  }
+  for (const int components : {3, 2}) {
+    const ProgramResult result = run({"--mixture.components", std::to_string(components)});
+    ASSERT_EQ(result.status, 0) << result.err;
+    EXPECT_EQ(read_archive(archive()).bank->mode_count(), components);
   }
 }
 
@@ -117,9 +110,9 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
 TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
   app::WindowCounts counts;
   counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
-  EXPECT_TRUE(app::window_warnings({}, counts).empty());
+  EXPECT_TRUE(app::window_warnings(counts).empty());
   counts.status[static_cast<std::size_t>(FitStatus::failed)] = 3;
-  const std::vector<app::Warning> warnings = app::window_warnings({}, counts);
+  const std::vector<app::Warning> warnings = app::window_warnings(counts);
   ASSERT_EQ(warnings.size(), 1U);
   EXPECT_EQ(warnings[0].kind, app::WarningKind::failed_windows);
   EXPECT_NE(warnings[0].text.find("3 of 8 windows have no finite fit"), std::string::npos) << warnings[0].text;

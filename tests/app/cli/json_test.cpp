@@ -69,7 +69,7 @@ TEST_F(Json, CommandsGiveTheMembersThatAreDocumented) {
       {"version"},
       {"help", "window.length"},
       {"config", config()},
-      {"check", config(), "--findings"},
+      {"check", config()},
       {"init", file("run_00.csv").string(), "-o", file("init.ini").string()},
       {"identify", config(), "--archive.output", windows},
       {"cluster", config(), "--archive.output", clusters},

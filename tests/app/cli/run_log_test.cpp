@@ -16,27 +16,6 @@ namespace modebank::test {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
-
-constexpr double measured_sd = 0.02;
-
-/// Speed of a body that follows its command within two samples: v[k+1] = 0.2 v[k] + 0.8 u[k]. The measurement noise has
-/// standard deviation measured_sd. In every fourth block of 40 samples the command is zero and the body rests.
-std::string body_log(int samples, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::normal_distribution<double> normal;
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  std::ostringstream text;
-  text.precision(17);
-  text << "t,speed,cmd_speed\n";
-  double v = 0.0, u = 0.0;
-  for (int k = 0; k < samples; ++k) {
-    if (k % 40 == 0) u = k / 40 % 4 == 3 ? 0.0 : uniform(generator);
-    text << 0.1 * k << ',' << v + measured_sd * normal(generator) << ',' << u << '\n';
-    v = 0.2 * v + 0.8 * u + 0.002 * normal(generator);
-  }
-  return text.str();
-}
 
 class RunLog : public CliTest {
  protected:
@@ -58,14 +37,14 @@ TEST_F(RunLog, RefusesFilesThatExistBeforeAnythingIsComputed) {
   EXPECT_THAT(result.err, HasSubstr(ini() + ", " + html() + " exist: replace with --force"));
   EXPECT_EQ(read_file(ini()), "[data]\nstate = x\n");
   write("log.csv", csv_run(300, 3));
-  EXPECT_EQ(run_log({file("log.csv").string(), "--force", "--effort", "quick"}).status, 0);
+  EXPECT_EQ(run_log({file("log.csv").string(), "--force"}).status, 0);
   EXPECT_THAT(read_file(ini()), HasSubstr("state = wz"));
 }
 
 TEST_F(RunLog, LogsOfOneKindAreRunsAndOtherColumnsAreRefused) {
   for (const unsigned i : {1u, 2u, 3u, 4u}) write("log_" + std::to_string(i) + ".csv", csv_run(150, i));
   const auto log = [&](int i) { return file("log_" + std::to_string(i) + ".csv").string(); };
-  const ProgramResult several = run_log({log(1), log(2), log(3), log(4), "--effort", "quick"});
+  const ProgramResult several = run_log({log(1), log(2), log(3), log(4)});
   ASSERT_EQ(several.status, 0) << several.err;
   EXPECT_THAT(several.out, HasSubstr("runs      4, one for each file"));
   EXPECT_EQ(read_archive(h5()).recording->runs.size(), 4u);
@@ -120,7 +99,7 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   }
   write("wheels.csv", commands.str());
   write("gyro.csv", gyro.str());
-  const ProgramResult result = run_log({file("wheels.csv").string(), file("gyro.csv").string(), "--effort", "quick"});
+  const ProgramResult result = run_log({file("wheels.csv").string(), file("gyro.csv").string()});
   ASSERT_EQ(result.status, 0) << result.err;
   const Archive archive = read_archive(h5());
   ASSERT_TRUE(archive.lag);
@@ -134,48 +113,10 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   EXPECT_THAT(read_file(ini()), HasSubstr("are taken for two instruments of one run: they have 149."));
 }
 
-/// The variance at rest is tried as R; its true value is measured_sd^2. In the training half, the body rests for about
-/// 150 samples. The variance of these has a relative standard error of sqrt(2 / 150), 12 %. The test allows three of
-/// these errors.
-TEST_F(RunLog, TheNoiseAtRestIsTriedAndItsGainStated) {
-  write("body.csv", body_log(1600, 1));
-  const ProgramResult result = run_log({file("body.csv").string(), "--json"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const nlohmann::json said = nlohmann::json::parse(result.out);
-  std::string noise;
-  for (const auto& decision : said.at("decisions"))
-    if (decision.get<std::string>().starts_with("bank.measurement_variance")) noise = decision;
-  ASSERT_FALSE(noise.empty()) << said.at("decisions");
-  const double variance = std::stod(noise.substr(noise.find("= ") + 2));
-  EXPECT_NEAR(variance / (measured_sd * measured_sd), 1.0, 0.36);
-  EXPECT_THAT(noise, HasSubstr("nats per sample"));
-  EXPECT_THAT(read_file(ini()), HasSubstr("at rest ("));
-}
-
-TEST_F(RunLog, EffortIsOneOfThreeWordsAndForLogs) {
-  write("body.csv", body_log(600, 1));
-  const std::string log = file("body.csv").string();
-  const ProgramResult other = run_log({log, "--effort", "some"});
-  EXPECT_EQ(other.status, 2);
-  EXPECT_THAT(other.err, HasSubstr("--effort some: allowed are quick"));
-  const ProgramResult configured = modebank({"run", config(), "--effort", "quick"});
-  EXPECT_EQ(configured.status, 2);
-  EXPECT_THAT(configured.err, HasSubstr("modebank run LOG"));
-  const ProgramResult quick = run_log({log, "--effort", "quick"});
-  ASSERT_EQ(quick.status, 0) << quick.err;
-  EXPECT_THAT(quick.err, Not(HasSubstr("tried:")));
-  EXPECT_THAT(read_file(ini()), Not(HasSubstr("measurement_variance")));
-  const ProgramResult thorough =
-      run_log({log, "--effort", "thorough", "--force", "--mixture.restarts", "1", "--mixture.components", "1..2"});
-  ASSERT_EQ(thorough.status, 0) << thorough.err;
-  EXPECT_THAT(thorough.err, HasSubstr("tried:"));
-  EXPECT_THAT(read_file(ini()), HasSubstr("# from the command line\nrestarts = 1"));
-}
-
 TEST_F(RunLog, KeysOfTheCommandLineAreWrittenAndThoseOfTheLogsRefused) {
   write("log.csv", csv_run(300, 3));
   const std::string log = file("log.csv").string();
-  ASSERT_EQ(run_log({log, "--effort", "quick", "--data.input", "left", "--job.seed", "7"}).status, 0);
+  ASSERT_EQ(run_log({log, "--data.input", "left", "--job.seed", "7"}).status, 0);
   EXPECT_THAT(read_file(ini()), HasSubstr("input = left "));
   EXPECT_THAT(read_file(ini()), HasSubstr("seed = 7"));
   const ProgramResult refused = run_log({log, "--force", "--data.inputs", "other.csv"});

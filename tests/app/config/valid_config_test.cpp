@@ -42,6 +42,14 @@ TEST_F(ValidConfig, AllKeysThatStandInTheWayAreNamed) {
   EXPECT_THAT(message, Not(HasSubstr("window.length")));
 }
 
+TEST_F(ValidConfig, DelaysAreOneOrOnePerInput) {
+  for (const std::string delays : {"4", "1, 4"})
+    EXPECT_NO_THROW(load("[window]\nmodel = varx\ninput_delay = " + delays + "\n", {{"data.input", "a, b"}}));
+  EXPECT_THAT(objection("[window]\nmodel = varx\ninput_delay = 1, 4, 2\n", {{"data.input", "a, b"}}),
+              HasSubstr("window.input_delay takes one number, or one for each of the 2 inputs"));
+  EXPECT_THAT(objection("[window]\nmodel = varx\ninput_delay = 1, -4\n", {}), HasSubstr("out of range"));
+}
+
 TEST_F(ValidConfig, TheAdviceHelps) {
   EXPECT_NO_THROW(
       load("[window]\nmodel = varx\nstate_lags = 3\n", {{"window.model", "linear"}, {"window.state_lags", "1"}}));

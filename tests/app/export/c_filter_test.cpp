@@ -38,7 +38,7 @@ Bank with_clock(Bank bank) {
 }
 
 /// A bank with two states (z and v), three lags of the states and two lags of the inputs.
-Bank lagged_bank(Index input_delay) {
+Bank lagged_bank(const InputDelays& input_delay) {
   Bank bank = example_bank(2, 2, 2, 1e-4);
   bank.structure = {2, 2, true, 3, 2, input_delay};
   const Index p = bank.structure.parameters(), n = bank.structure.dimension();
@@ -76,7 +76,8 @@ TEST(ExportedC, FollowsTheNoiseOfARun) {
 }
 
 TEST(ExportedC, HasLags) {
-  for (const Index delay : {0, 1, 2}) expect_same(with_clock(lagged_bank(delay)), adaptive());
+  for (const InputDelays& delay : {InputDelays(0), InputDelays(1), InputDelays(2), InputDelays({4, 1})})
+    expect_same(with_clock(lagged_bank(delay)), adaptive());
 }
 
 TEST(ExportedC, SwitchesByStateAndInput) {

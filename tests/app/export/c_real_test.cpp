@@ -47,10 +47,10 @@ class ExportedCOfRobots : public CliTest {
   }
 };
 
-TEST_F(ExportedCOfRobots, Tyres) {
-  simulate("simulate_ice.ini");
+TEST_F(ExportedCOfRobots, Demo) {
+  simulate("simulate_demo.ini");
   // A bank whose noise depends on the inputs cannot be exported.
-  learn("tyres.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
+  learn("demo.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
   expect_same();
 }
 

@@ -338,8 +338,7 @@ TEST(ShippedConfigurations, FindTheirData) {
   for (const auto& entry : fs::directory_iterator(test::project_dir() / "configs")) {
     if (!entry.is_regular_file()) continue;  // skips the folder of systems
     const std::string name = entry.path().stem().string();
-    if (name == "minimal" || name == "reference" || name == "demo" || name == "tyres" || name.starts_with("simulate"))
-      continue;
+    if (name == "minimal" || name == "reference" || name == "demo" || name.starts_with("simulate")) continue;
     Config config = load_config(entry.path(), {{"data.root", test::shared_data_dir().string()}});
     config.data.lag_auto = false;
     EXPECT_NO_THROW(imported += import_data(data_options_of(config)).recording.runs.empty() ? 0 : 1) << name;

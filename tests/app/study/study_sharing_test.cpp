@@ -70,10 +70,6 @@ const std::vector<KeyValues> trials{
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
-    // The cost of merging modes is computed by a run of the filter, so the filter's keys affect it.
-    {{"mixture.components", "3"}, {"bank.modes", "2"}},
-    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.variant", "salvi2025"}},
-    {{"mixture.components", "3"}, {"bank.modes", "2"}, {"filter.noise", "adaptive"}},
     {{"job.seed", "9"}},
     {{"window.loss", "cauchy"}},
     {{"window.length", "20"}, {"filter.noise", "adaptive"}},

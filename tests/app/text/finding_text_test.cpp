@@ -155,15 +155,13 @@ TEST(FindingText, APatternNamesTheKeyThatLooksForLags) {
             Not(HasSubstr("evidence")), Not(HasSubstr("scatter"))));
 }
 
-TEST(FindingText, AnErrorFromBlocksSaysSo) {
+TEST(FindingText, AnErrorFromStretchesSaysSo) {
   Finding finding = finding_of(Answer::evidence);
-  EXPECT_THAT(finding_text(finding), Not(HasSubstr("blocks")));
+  EXPECT_THAT(finding_text(finding), Not(HasSubstr("stretches")));
   finding.gains = {{"one_motion", 700, 0.1344, 0.0402, 11.0, 0.1034, true}};
-  finding.runs = 1;
-  EXPECT_THAT(finding_text(finding),
-              HasSubstr("nats per sample; more than 0.103 passes; error from 12 blocks of the one run)."));
-  finding.runs = 3;
-  EXPECT_THAT(finding_text(finding), HasSubstr("; error from 12 blocks of the 3 runs)."));
+  EXPECT_THAT(finding_text(finding), HasSubstr("nats per sample; more than 0.103 passes; error from 12 stretches)."));
+  finding.stretches = true;
+  EXPECT_THAT(finding_text(finding), HasSubstr("held-out stretches better than"));
 }
 
 /// The sentence names only one competitor. The screen gives the errors of the same competitor.

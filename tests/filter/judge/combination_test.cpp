@@ -27,6 +27,7 @@ HorizonEvaluation forecasts(Index N, const std::vector<Index>& horizons, unsigne
     for (Index k = horizons[h]; k < N; ++k) {
       const double error = said.error[h](0, k) = normal(random);
       said.log_density(static_cast<Index>(h), k) = -0.5 * error * error - 0.919;
+      said.pit[h](0, k) = 0.5 * std::erfc(-error / std::sqrt(2.0));
     }
   return said;
 }
@@ -58,8 +59,9 @@ TEST(Combination, AForecastHasTheWeightsOfItsOrigin) {
                 static_cast<double>(h);
       const double weight = 1.0 / (1.0 + std::exp(-odds));
       EXPECT_NEAR(all.weight[at](0, k), weight, combined_digits);
-      EXPECT_NEAR(all.predictions.error[at](0, k), weight * a.error[at](0, k) + (1 - weight) * b.error[at](0, k),
-                  combined_digits);
+      for (const auto member : {&HorizonEvaluation::error, &HorizonEvaluation::pit})
+        EXPECT_NEAR((all.predictions.*member)[at](0, k),
+                    weight * (a.*member)[at](0, k) + (1 - weight) * (b.*member)[at](0, k), combined_digits);
       EXPECT_NEAR(all.predictions.log_density(static_cast<Index>(at), k),
                   std::log(weight * std::exp(a.log_density(static_cast<Index>(at), k)) +
                            (1 - weight) * std::exp(b.log_density(static_cast<Index>(at), k))),

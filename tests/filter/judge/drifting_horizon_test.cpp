@@ -71,7 +71,10 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   const HorizonEvaluation drifting = evaluate_horizons(model, run, {}, {1, 2, 6});
   const HorizonEvaluation bank = evaluate_horizons(fixed(model), run, {FilterVariant::kf}, {1, 2, 6});
   EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * ahead_digits));
-  for (std::size_t h = 0; h < 3; ++h) EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
+  for (std::size_t h = 0; h < 3; ++h) {
+    EXPECT_TRUE(near(drifting.error[h], bank.error[h], ahead_digits));
+    EXPECT_TRUE(near(drifting.pit[h], bank.pit[h], 1e3 * ahead_digits));
+  }
 }
 
 /// If the model is correct and drifts slowly, errors have the predicted variance.

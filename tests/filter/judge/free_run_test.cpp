@@ -36,7 +36,7 @@ Eigen::MatrixXd arx_recursion(const LinearStructure& s, const Eigen::VectorXd& t
       for (Index lag = 1; lag <= s.state_lags; ++lag)
         for (Index j = 0; j < s.states; ++j) next += theta(p++) * x(j, k - lag);
       for (Index lag = 0; lag < s.input_lags; ++lag)
-        for (Index j = 0; j < s.inputs; ++j) next += theta(p++) * run.input(j, k - s.input_delay - lag);
+        for (Index j = 0; j < s.inputs; ++j) next += theta(p++) * run.input(j, k - s.input_delay[j] - lag);
       if (s.intercept) next += theta(p);
       x(i, k) = next;
     }
@@ -45,7 +45,11 @@ Eigen::MatrixXd arx_recursion(const LinearStructure& s, const Eigen::VectorXd& t
 }
 
 TEST(FreeRun, OneModeIsThePlainRecursion) {
-  const LinearStructure structures[]{{1, 1, true}, {2, 2, true}, {1, 1, true, 3, 3, 0}, {2, 1, false, 2, 3, 2}};
+  const LinearStructure structures[]{{1, 1, true},
+                                     {2, 2, true},
+                                     {1, 1, true, 3, 3, 0},
+                                     {2, 1, false, 2, 3, 2},
+                                     {1, 2, true, 2, 2, InputDelays({4, 1})}};
   for (const LinearStructure& s : structures) {
     const Eigen::VectorXd theta = stable_theta(s);
     const Bank bank = arx_bank(s, theta);

@@ -291,6 +291,7 @@ TEST(Horizon, OneSampleAheadIsWhatTheFilterSays) {
     EXPECT_EQ(h.horizons, (std::vector<Index>{1, 4}));
     EXPECT_TRUE(near(h.error[0], e.innovation, 1e-14));
     EXPECT_TRUE(near(h.log_density.row(0), e.log_density.transpose(), 1e-12));
+    EXPECT_TRUE(near(h.pit[0].row(0), e.pit.row(0), 1e-12));
     EXPECT_TRUE(std::isnan(h.log_density(1, 3)) && !std::isnan(h.log_density(1, 4)));
   }
 }
@@ -312,6 +313,8 @@ TEST(Horizon, SeveralSamplesAheadIsTheModelRunOn) {
     const Eigen::Matrix2d S = P + bank.R;
     const Eigen::Vector2d error = run.state.col(k + 5) - x;
     EXPECT_TRUE(near(h.error[0].col(k + 5), error, 1e-12));
+    for (Index i = 0; i < 2; ++i)
+      EXPECT_NEAR(h.pit[0](i, k + 5), 0.5 * std::erfc(-error(i) / std::sqrt(2.0 * S(i, i))), 1e-12);
     EXPECT_NEAR(h.log_density(0, k + 5),
                 -std::log(2 * M_PI) - 0.5 * std::log(S.determinant()) - 0.5 * error.dot(S.inverse() * error), 1e-10);
   }
@@ -330,6 +333,7 @@ TEST(Horizon, SummarisesRunsAndPools) {
   EXPECT_EQ(rows[5].samples, 20 + 40);
   EXPECT_NEAR(rows[5].log_score, (rows[1].log_score * 20 + rows[3].log_score * 40) / 60, 1e-12);
   EXPECT_GT(rows[5].rmse(0), rows[4].rmse(0));
+  EXPECT_NEAR(rows[5].coverage_95, (rows[1].coverage_95 * 20 + rows[3].coverage_95 * 40) / 60, 1e-12);
 }
 
 }  // namespace

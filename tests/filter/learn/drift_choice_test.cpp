@@ -23,11 +23,8 @@ Recording wandering_runs(const DriftRates& rates, std::uint64_t seed) {
 }
 
 WindowFits affine_windows(const Recording& recording) {
-  WindowFits fits;
-  fits.structure = {1, 1, true};
-  fits.length = 25;
-  fits.step = 5;
-  fits.windows = make_windows(recording, fits.length, fits.step);
+  WindowFits fits = test::windows_of(recording, 25, 5);
+  fits.structure.intercept = true;
   fits.global = fit_global(recording, fits.structure);
   return fits;
 }

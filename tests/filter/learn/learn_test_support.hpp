@@ -52,7 +52,8 @@ inline WindowFits windows_of(const Recording& recording, Index length, Index ste
   fits.structure = structure_of(recording);
   fits.length = length;
   fits.step = step;
-  fits.windows = make_windows(recording, length, step);
+  const WindowPlan plan(recording, length, step);
+  for (Index i = 0; i < plan.count(); ++i) fits.windows.push_back(plan.window(i));
   fits.global = fit_global(recording, fits.structure);
   return fits;
 }

@@ -109,13 +109,7 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
 /// Diagnostics of a bank on unseen runs.
 inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
                                            Index samples = 1000) {
-  std::vector<Trajectory> runs = simulated_recording(truth, 4, samples, seed + 1000).runs;
-  std::vector<RunEvaluation> evaluations;
-  for (Trajectory& run : runs) {
-    run.role = Role::test;
-    evaluations.push_back(evaluate_run(bank, run, {}));
-  }
-  return diagnose("bank", bank, {}, runs, evaluations, score_runs(evaluations)).front();
+  return row_of(bank, simulated_recording(truth, 4, samples, seed + 1000).runs);
 }
 
 /// Interval for the mean NEES of a learned bank, whose expected value is about n. The interval includes the scatter for

@@ -48,7 +48,7 @@ TEST(AlignedSamples, AreThoseOfTheWholeRun) {
     for (const double lag_s : {0.0, 0.17, -0.17, -0.5})
       for (const double rate_hz : {0.0, 10.0, 33.0}) {
         const Recorded run(400, 0.01, jitter);
-        const VectorXd time_s = joint_times(run.time_s, run.time_s, {rate_hz, lag_s, 0.0, 0.0});
+        const VectorXd time_s = joint_times(run.time_s, run.time_s, {rate_hz, lag_s});
         const MatrixXd state = interpolate({run.time_s, run.state}, time_s);
         const MatrixXd input = hold({run.time_s, run.input}, time_s.array() - lag_s);
         const std::vector<TimedSample> samples = aligned(run, {rate_hz, lag_s});
@@ -67,7 +67,7 @@ TEST(AlignedSamples, AverageWhatTheWholeRunAverages) {
     for (const double lag_s : {0.0, 0.17, -0.17})
       for (const double further_lag_s : {0.0, 0.05}) {
         const Recorded run(400, 0.01, jitter);
-        const VectorXd whole_s = joint_times(run.time_s, run.time_s, {10.0, lag_s, 0.0, 0.0});
+        const VectorXd whole_s = joint_times(run.time_s, run.time_s, {10.0, lag_s});
         const VectorXd time_s = whole_s.tail(whole_s.size() - 1);
         const MatrixXd state = average_ending({run.time_s, run.state}, time_s, 0.1);
         const VectorXd recorded_s = time_s.array() - lag_s - further_lag_s;

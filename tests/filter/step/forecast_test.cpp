@@ -43,8 +43,8 @@ Bank with_noise_by_input() {
   return bank;
 }
 
-Bank of_lags(Index delay) {
-  const LinearStructure s{2, 1, true, 3, 2, delay};
+Bank of_lags(const InputDelays& delay) {
+  const LinearStructure s{2, std::ssize(delay.listed()), true, 3, 2, delay};
   Bank bank = test::arx_bank(s, test::stable_theta(s));
   bank.modes.push_back(bank.modes.front());
   bank.modes[1].model.A.topRows(2) *= 0.5;
@@ -77,6 +77,7 @@ std::vector<NamedBank> banks() {
           {"lags without delay", of_lags(0)},
           {"lags", of_lags(1)},
           {"lags with delay 3", of_lags(3)},
+          {"lags with delays", of_lags(InputDelays({4, 1, 2}))},
           {"quantised", quantised},
           {"drift", test::drifting(test::exact_bank(2, 2), {1e-3, 1e-2, 0.99})},
           {"drift with running noise", with_running_noise(Wandering::all)},
@@ -149,7 +150,7 @@ TEST(Forecast, IsWhatStepsWithoutMeasurementsPredict) {
     for (Index k = 0; k < 20; ++k) take(live, bank, k);
     const Index steps = 7;
     const std::vector<filter::Forecast> ahead =
-        live.forecast(planned(bank, 19, std::max<Index>(steps - bank.structure.input_delay, 0)), steps);
+        live.forecast(planned(bank, 19, std::max<Index>(steps - bank.structure.input_delay.earliest(), 0)), steps);
     for (Index i = 0; i < steps; ++i) {
       const filter::Estimate& said =
           live.step(std::nan(""), input_at(bank, 20 + i), VectorXd(VectorXd::Constant(bank.C.rows(), std::nan(""))));

@@ -150,14 +150,14 @@ def check_data(file):
 
 def check_lag(file):
     group = file["lag"]
-    expect("correction", group.attrs["correction"], b"per_run")
+    expect("correction", group.attrs["correction"], b"pooled")
     expect("pooled lag", group.attrs["lag_s"], 0.25)
     runs = group["runs"]
     expect("lag runs", [name.decode() for name in runs["run"]], ["run 2", "Gelände.ä", "10"])
     expect("lag status", list(runs["status"]), [b"at_edge", b"not_estimated", b"at_edge"])
     expect("lag applied", runs["applied_lag_s"], np.array([0.0, 0.1, 0.2]))
     expect("lag units", dict(zip(runs.dtype.names, runs.attrs["units"]))["lag_s"], b"s")
-    expect("lag scores", list(group["scores"]["correction"]), [b"none", b"drift"])
+    expect("lag scores", list(group["scores"]["correction"]), [b"none", b"pooled"])
 
 
 def check_windows(file):
@@ -184,12 +184,10 @@ def check_windows(file):
     expect_array(group["standard_error"], (M, p), "<f8", PARAMETER_UNITS)
     expect_array(group["t_value"], (M, p), "<f8")
     expect_array(group["r_squared"], (M, n), "<f8")
-    expect_array(group["aic"], (M,), "<f8", b"nat")
     expect_array(group["transitions"], (M,), "<i4")
     error = np.sqrt(np.diagonal(pattern(M, p * p, 2.0).reshape(M, p, p), axis1=1, axis2=2))
     expect("standard_error", group["standard_error"][()], error)
     expect("t_value", group["t_value"][()], pattern(M, p, 1.0) / error)
-    expect("aic", group["aic"][()], pattern(1, M, 13.0)[0])
     expect("parameters", group["parameters"][()], pattern(M, p, 1.0))
     expect("covariance", group["covariance"][()], spread(M, p, 2.0))
     expect("rank", group["rank"][()], np.arange(1, M + 1) % (p + 1))
@@ -315,7 +313,8 @@ def check_evaluation(file):
     expect("summary role", table["role"], np.array([b"train", b"test"] * 4))
     expect("summary run", table["run"], np.array([b"run 2", b"*"] * 4))
     expect("horizon columns", file["evaluation/horizon"].dtype.names,
-           ("filter", "role", "run", "horizon", "samples", "log_score", "rmse"))
+           ("filter", "role", "run", "horizon", "samples", "log_score", "rmse",
+            "coverage_95"))
     combination = file["evaluation/combination"]
     expect("combination columns", combination.dtype.names, ("role", "horizon", "filter", "weight", "start"))
     expect("combination weight", combination["weight"], np.array([0.75, 0.25]))

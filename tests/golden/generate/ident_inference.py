@@ -33,7 +33,6 @@ def weighted_least_squares(rng):
         "noise_variance": fit.scale / w[1:][used].mean(),
         # statsmodels' R^2 of a model without constant is about zero, modebank's is about the mean
         "r_squared": 1 - fit.ssr / fit.centered_tss,
-        "aic": fit.aic + 2,  # statsmodels does not count the variance as a parameter
         "population_variance": fit.ssr / used.sum() / w[1:][used].mean(),
         "transitions": int(used.sum()),
     }
@@ -49,14 +48,7 @@ def ordinary_least_squares(rng):
         "standard_error": np.concatenate([f.bse for f in fits]).tolist(),
         "t_value": np.concatenate([f.tvalues for f in fits]).tolist(),
         "r_squared": [f.rsquared for f in fits],  # with a constant it is about the mean
-        "aic": sum(f.aic + 2 for f in fits),
     }
-
-
-def slope(loss, s):
-    """d psi / d r = rho' + 2 rho'' s by central differences of psi."""
-    r, h = np.sqrt(s), 1e-6
-    return ((r + h) * weight(loss, (r + h) ** 2) - (r - h) * weight(loss, (r - h) ** 2)) / (2 * h)
 
 
 def repeated_transitions(rng):
@@ -66,7 +58,7 @@ def repeated_transitions(rng):
     X, Y = regression(x, u, 0)
     sigma = np.array([0.06])
     copies = np.repeat(np.arange(30), w[1:])
-    optima, aics, r_squared = {}, {}, {}
+    optima, r_squared = {}, {}
     for loss in TUNING:
         start = optima.get("huber", np.linalg.lstsq(X, Y, rcond=None)[0].T.ravel())
         start = optimize.minimize(cost, start, args=(loss, X[copies], Y[copies], sigma), tol=1e-10).x
@@ -78,12 +70,9 @@ def repeated_transitions(rng):
         omega = weight(loss, s)
         mean = (omega * v * Y[:, 0]).sum() / (omega * v).sum()
         r_squared[loss] = 1 - (omega * v * e**2).sum() / (omega * v * (Y[:, 0] - mean) ** 2).sum()
-        price = (v * omega**2 * s).sum() / (v * slope(loss, s)).sum()
-        rho = 2 * sum(v[k] * cost(theta, loss, X[k : k + 1], Y[k : k + 1], sigma) for k in range(30))
-        aics[loss] = 30 * np.log(2 * np.pi * sigma[0] ** 2) + rho - np.log(v).sum() + 2 * (3 * price + 1)
     return {
         "state": x.tolist(), "input": u.tolist(), "weight": w.tolist(), "sigma": sigma.tolist(),
-        "theta": {k: v.tolist() for k, v in optima.items()}, "aic": aics, "r_squared": r_squared,
+        "theta": {k: v.tolist() for k, v in optima.items()}, "r_squared": r_squared,
     }
 
 

@@ -1,5 +1,4 @@
 #include "ident/base/not_a_number.hpp"
-#include "ident/check/advice.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
 #include "tests/ident/ident_test_support.hpp"
@@ -214,37 +213,6 @@ TEST(DeficientWindows, AreThoseWithinOneCommand) {
   EXPECT_EQ(windows.windows, 391);
   EXPECT_EQ(windows.deficient, 310);
   EXPECT_EQ(count_deficient_windows(driven_run(401, 1), 10, skid_structure).deficient, 0);
-}
-
-TEST(AdviseLength, IsTheShortestThatExcites) {
-  const LengthAdvice held = advise_length({driven_run(4001, 40)}, skid_structure);
-  EXPECT_TRUE(held.enough);
-  EXPECT_EQ(held.length, 40) << "all but one in 40 such windows see a change of command";
-  EXPECT_EQ(advise_length({driven_run(4001, 1)}, skid_structure).length, 25) << "eight transitions per regressor";
-}
-
-TEST(AdviseLoss, ByTheTailsOfOneStepErrors) {
-  Recording recording;
-  recording.runs = {driven_run(4001, 1)};
-  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::trivial);
-  const VectorXd size = noise(4001, 10, 1.0);
-  for (Index k = 0; k < 4001; k += 200) recording.runs[0].state(0, k) += 0.5 * size(k);
-  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::huber);
-  for (Index k = 0; k < 4001; k += 20) recording.runs[0].state(0, k) += 5.0;
-  EXPECT_EQ(advise_loss(recording, skid_structure).loss, Loss::tukey);
-}
-
-TEST(AdviseRate, ByTheTimeConstant) {
-  EXPECT_EQ(advise_rate({10.0, 100.0, 0.01, 0.0, 0.5}).reason, RateReason::keep);
-  const RateAdvice fast = advise_rate({100.0, 100.0, 0.01, 0.0, 0.5});
-  EXPECT_EQ(fast.reason, RateReason::too_fast);
-  EXPECT_DOUBLE_EQ(fast.rate_hz, 20.0);
-  EXPECT_EQ(advise_rate({5.0, 100.0, 0.01, 0.0, 0.2}).reason, RateReason::too_slow);
-  EXPECT_EQ(advise_rate({5.0, 5.0, 0.01, 0.0, 0.2}).reason, RateReason::keep) << "no state shows more";
-  EXPECT_EQ(advise_rate({10.0, 100.0, 0.3, 0.0, 0.5}).reason, RateReason::jitter);
-  const RateAdvice repeated = advise_rate({20.0, 20.0, 0.0, 0.5, 0.5});
-  EXPECT_EQ(repeated.reason, RateReason::repeats);
-  EXPECT_DOUBLE_EQ(repeated.rate_hz, 10.0);
 }
 
 }  // namespace

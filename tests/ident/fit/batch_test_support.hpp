@@ -2,6 +2,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -120,6 +121,9 @@ struct ReferenceProblem {
     return theta;
   }
 };
+
+/// Number of windows that the batch solver solved.
+inline Index by_batch(const WindowFits& fits) { return std::count(fits.by_batch.begin(), fits.by_batch.end(), 1); }
 
 /// A recording with changes of regime, 5 % outliers, a stretch of standstill and missing samples.
 inline Recording hard_recording(const LinearStructure& structure, Index samples, bool missing) {

@@ -56,7 +56,6 @@ TEST(FitWindows, AgreeWithFitWindow) {
   const Recording recording = mixed_recording();
   FitOptions options;
   options.step = 7;
-  options.scale = ScaleSource::fixed;
   options.sigma = 0.06;
   options.prior_sd = {0.7};
   const WindowFits fits = fit_windows(recording, options);
@@ -74,18 +73,20 @@ TEST(FitWindows, AgreeWithFitWindow) {
   }
 }
 
-TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
+/// A window of three transitions has no residuals to estimate sigma from, so it has the sigma of its run.
+TEST(FitWindows, TakeSigmaFromTheWindowOrItsRun) {
   const Recording recording = mixed_recording();
   FitOptions options;
-  options.prior = Prior::none;
-  for (const ScaleSource source : {ScaleSource::window, ScaleSource::run}) {
-    options.scale = source;
+  options.prior_sd = {0.7};
+  for (const Index length : {25, 3}) {
+    options.length = length;
     const WindowFits fits = fit_windows(recording, options);
+    const ParameterPrior prior{fits.global.theta, fits.prior_sd};
     const Index i = 3;
     const Trajectory& run = recording.runs[0];
-    const bool whole = source == ScaleSource::run;
+    const bool whole = length == 3;
     // The scale by its definition: 1.4826 times the MAD of least-squares residuals, times sqrt(N / (N - 3)).
-    const Index first = whole ? 0 : fits.windows[3].start, N = whole ? run.transitions() : 25;
+    const Index first = whole ? 0 : fits.windows[3].start, N = whole ? run.transitions() : length;
     MatrixXd X(N, 3);
     X.col(0) = run.state.row(0).segment(first, N).transpose();
     X.rightCols(2) = run.input.middleCols(first, N).transpose();
@@ -98,9 +99,9 @@ TEST(FitWindows, TakeSigmaFromWhereTheyAreTold) {
     const double mad = N % 2 ? deviation(N / 2) : (deviation(N / 2) + deviation(N / 2 - 1)) / 2;
     const double sigma = 1.4826 * mad * std::sqrt(static_cast<double>(N) / static_cast<double>(N - 3));
     const LocalModel one =
-        fit_window(run, fits.windows[3].start, test::skid_structure, options, VectorXd::Constant(1, sigma), nullptr);
+        fit_window(run, fits.windows[3].start, test::skid_structure, options, VectorXd::Constant(1, sigma), &prior);
     constexpr double optimum_tolerance = 1e-9;  // this test computes sigma by normal equations
-    EXPECT_TRUE(near(fits.at(i).theta, one.theta, optimum_tolerance)) << name_of(source);
+    EXPECT_TRUE(near(fits.at(i).theta, one.theta, optimum_tolerance)) << length;
   }
 }
 
@@ -154,7 +155,7 @@ TEST(FitWindows, MarkUnexcitedWindows) {
 
 TEST(FitWindows, OneWindowOverOneRunIsTheGlobalModel) {
   std::mt19937_64 generator(5);
-  for (const LinearStructure s : {LinearStructure{1, 2, false}, LinearStructure{2, 1, true}}) {
+  for (const LinearStructure& s : {LinearStructure{1, 2, false}, LinearStructure{2, 1, true}}) {
     const VectorXd truth =
         s.states == 1 ? VectorXd(test::skid_theta) : VectorXd{{-0.3, 0.1, 0.5, 0.05, 0.2, -0.4, -0.3, -0.1}};
     const Trajectory run = test::gaussian_run(s, truth, 0.1, 61, generator);

@@ -44,7 +44,6 @@ struct GoldenCase {
   Fit fit(FitOptions options, std::vector<RecordedRun> runs) const {
     options.length = state.cols() - 1;
     options.intercept = json.at("intercept").get<bool>();
-    options.scale = ScaleSource::fixed;
     options.sigma = 1.0;
     for (RecordedRun& run : runs) run.state = to_matrix(sigma.cwiseInverse().asDiagonal() * view(run.state));
     const ident::Windows windows = ident::fit_windows({runs, {}, {}}, options);

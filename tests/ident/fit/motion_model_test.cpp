@@ -213,10 +213,10 @@ TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
         run.weight(k) = k % 9 == 0 ? 0.0 : 0.01;
       }
     const Recording recording = test::make_recording({run});
-    for (const ScaleSource scale : {ScaleSource::window, ScaleSource::run}) {
+    for (const double sigma : {0.0, 0.1}) {
       FitOptions options;
       options.prior = Prior::none;
-      options.scale = scale;
+      options.sigma = sigma;
       options.intercept = structure.intercept;
       options.step = 5;
       const WindowFits linear = fit_windows(recording, options),

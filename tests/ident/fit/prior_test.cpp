@@ -189,7 +189,7 @@ TEST(FitWindowsOptions, AreChecked) {
   rejects([](FitOptions& o) { o.length = 0; });
   rejects([](FitOptions& o) { o.step = 0; });
   rejects([](FitOptions& o) { o.loss_scale = -1; });
-  rejects([](FitOptions& o) { o.scale = ScaleSource::fixed; });
+  rejects([](FitOptions& o) { o.sigma = -1.0; });
   rejects([](FitOptions& o) { o.prior_sd = {1.0, 1.0}; });
   rejects([](FitOptions& o) { o.prior_sd = {-1.0}; });
   rejects([](FitOptions& o) { o.max_iterations = 0; });

@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "ident/base/not_a_number.hpp"
+#include "modebank/base/error.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank {
@@ -39,7 +40,7 @@ Eigen::MatrixXd stacked_states(const LinearStructure& s, const Trajectory& run) 
   return lagged(run.state, s.state_lags, 0, run.samples());
 }
 Eigen::MatrixXd acting_inputs(const LinearStructure& s, const Trajectory& run) {
-  return lagged(run.input, s.input_lags, 1 - s.input_delay, run.transitions());
+  return lagged(run.input, s.input_lags, 1 - s.input_delay.latest(), run.transitions());
 }
 
 /// An ARX structure na, nb, nk in modebank's form.
@@ -154,6 +155,34 @@ TEST(Varx, WindowsStartWhereAllLagsLieInsideTheRun) {
   EXPECT_EQ(fits.parameter_names(), (std::vector<std::string>{"A_lag1", "A_lag2", "B1_lag2", "B2_lag2", "B1_lag3",
                                                               "B2_lag3", "B1_lag4", "B2_lag4"}));
   EXPECT_TRUE(fits.parameters.allFinite());
+}
+
+/// y[k+1] = 1.5 y[k] - .6 y[k-1] + .5 u1[k] + .2 u1[k-1] - .3 u2[k-3] + .4 u2[k-4], without noise.
+TEST(Varx, EachInputHasItsOwnDelay) {
+  std::mt19937_64 generator(6);
+  boost::random::uniform_real_distribution<double> value(-1.0, 1.0);
+  Eigen::MatrixXd y = Eigen::MatrixXd::Zero(1, 90), u(2, 90);
+  for (double& entry : u.reshaped()) entry = value(generator);
+  for (Index k = 4; k < 89; ++k)
+    y(k + 1) = 1.5 * y(k) - 0.6 * y(k - 1) + 0.5 * u(0, k) + 0.2 * u(0, k - 1) - 0.3 * u(1, k - 3) + 0.4 * u(1, k - 4);
+  const Recording recording = test::make_recording({test::make_run(y, u)});
+  const Eigen::VectorXd theta{{0.5, -0.6, 0.5, -0.3, 0.2, 0.4}};
+  FitOptions options;
+  options.model = "varx";
+  options.state_lags = options.input_lags = 2;
+  options.input_delay = InputDelays({1, 4});
+  const WindowFits fits = fit_windows(recording, options);
+  EXPECT_LT((fit_global(recording, fits.structure).theta - theta).norm(), 1e-9);
+  EXPECT_LT((fits.parameters.colwise() - theta).cwiseAbs().maxCoeff(), 1e-9);
+  EXPECT_EQ(fits.windows.front().start, 4);
+  EXPECT_EQ(fits.parameter_names(),
+            (std::vector<std::string>{"A_lag1", "A_lag2", "B1_lag1", "B2_lag4", "B1_lag2", "B2_lag5"}));
+  options.input_delay = InputDelays({4, 4});
+  const Eigen::MatrixXd listed = fit_windows(recording, options).parameters;
+  options.input_delay = 4;
+  EXPECT_EQ(fit_windows(recording, options).parameters, listed);
+  options.input_delay = InputDelays({4, 4, 4});
+  EXPECT_THROW(fit_windows(recording, options), ConfigurationError);
 }
 
 TEST(Varx, OneLagIsTheLinearModel) {

@@ -5,7 +5,7 @@
 namespace modebank {
 namespace {
 
-constexpr LinearStructure many_lags{1, 2, false, 8, 8};  // 24 regressors
+const LinearStructure many_lags{1, 2, false, 8, 8};  // 24 regressors
 
 /// Six runs of 1000 samples that switch between two motions every `stay` samples. With `stay` 0 there is one motion.
 Recording switching_runs(Index stay) {

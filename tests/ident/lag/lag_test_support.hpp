@@ -2,17 +2,16 @@
 
 #include <cmath>
 
-#include "ident/data/input_clock.hpp"
 #include "ident/lag/choice.hpp"
 #include "tests/ident/ident_test_support.hpp"
 
 namespace modebank::test {
 
-/// First-order response to held commands that act late: tau x' = b'u(t - lag(t)) - x, in exact steps of a millisecond,
+/// First-order response to held commands that act late: tau x' = b'u(t - lag) - x, in exact steps of a millisecond,
 /// measured with noise. Commands change every `hold_s` on average and are quantised.
 struct DelayedSystem {
   double time_constant_s = 0.2;
-  InputClock clock;
+  double lag_s = 0.0;
   double duration_s = 60.0;
   double input_rate_hz = 6.5, state_rate_hz = 100.0;
   double noise_sd = 0.01;
@@ -49,7 +48,7 @@ inline RunPair simulate_delayed(const DelayedSystem& system, std::uint64_t seed)
         run.states.time_s(k) = t;
         run.states.values(0, k) = x + system.noise_sd * normal(generator);
       }
-      const double acting = t - system.clock.at(t);
+      const double acting = t - system.lag_s;
       const auto sample =
           std::clamp<Index>(static_cast<Index>(std::floor(acting * system.input_rate_hz + 1e-9)), 0, inputs - 1);
       const double target = acting < 0.0 ? 0.0 : system.gain.dot(run.inputs.values.col(sample));

@@ -25,6 +25,11 @@ TEST(ParameterLabels, LagsAsABankNamesThem) {
                    "wz <- r (lag 1)"}));
 }
 
+TEST(ParameterLabels, LagsCountFromTheInputsOwnDelay) {
+  EXPECT_EQ(parameter_labels({1, 2, false, 1, 2, InputDelays({1, 4})}, {"wz"}, {"l", "r"}),
+            (Names{"wz <- wz (lag 1)", "wz <- l (lag 1)", "wz <- r (lag 4)", "wz <- l (lag 2)", "wz <- r (lag 5)"}));
+}
+
 /// The position of the label must match the entry for that name in A, B or c.
 TEST(ParameterLabels, StandInThetasOrder) {
   const LinearStructure structure{2, 2, true, 3, 2, 2};

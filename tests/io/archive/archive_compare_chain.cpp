@@ -65,8 +65,7 @@ void expect_same(const LagReport& actual, const LagReport& expected) {
   EXPECT_EQ(actual.lag.mean, expected.lag.mean);
   EXPECT_EQ(actual.lag.between_sd, expected.lag.between_sd);
   EXPECT_EQ(actual.lag.count, expected.lag.count);
-  EXPECT_EQ(actual.drift.mean, expected.drift.mean);
-  EXPECT_EQ(std::isnan(actual.drift.standard_error), std::isnan(expected.drift.standard_error));
+  EXPECT_EQ(actual.lag.standard_error, expected.lag.standard_error);
   ASSERT_EQ(actual.scores.size(), expected.scores.size());
   EXPECT_EQ(actual.scores.back().correction, expected.scores.back().correction);
   EXPECT_EQ(actual.scores.back().gain_standard_error, expected.scores.back().gain_standard_error);
@@ -75,9 +74,7 @@ void expect_same(const LagReport& actual, const LagReport& expected) {
     EXPECT_EQ(actual.runs[r].run, expected.runs[r].run);
     EXPECT_EQ(actual.runs[r].status, expected.runs[r].status);
     EXPECT_EQ(std::isnan(actual.runs[r].lag_s), std::isnan(expected.runs[r].lag_s));
-    EXPECT_EQ(actual.runs[r].match_windows, expected.runs[r].match_windows);
     EXPECT_EQ(actual.runs[r].applied_lag_s, expected.runs[r].applied_lag_s);
-    EXPECT_EQ(actual.runs[r].applied_clock_drift, expected.runs[r].applied_clock_drift);
   }
 }
 
@@ -100,7 +97,6 @@ void expect_same(const WindowFits& actual, const WindowFits& expected) {
   EXPECT_TRUE(same_bits(actual.inlier_fraction, expected.inlier_fraction));
   EXPECT_EQ(actual.status, expected.status);
   EXPECT_TRUE(same_bits(actual.r_squared, expected.r_squared));
-  EXPECT_TRUE(same_bits(actual.aic, expected.aic));
   EXPECT_TRUE(same_bits(actual.weighed_information, expected.weighed_information));
   EXPECT_EQ(actual.transitions, expected.transitions);
   EXPECT_TRUE(same_bits(actual.prior_sd, expected.prior_sd));

@@ -39,19 +39,16 @@ Recording make_recording(Index n, Index m) {
 
 LagReport make_lag_report(const std::vector<Trajectory>& runs) {
   LagReport report;
-  report.correction = LagCorrection::per_run;
+  report.correction = LagCorrection::pooled;
   report.lag = {0.25, 0.125, 0.5, 2};
-  report.drift = {-1e-3, not_a_number, 0.0, 0};
   report.scores = {{LagCorrection::none, 35, 1.5, 0.25, 0.0, 0.0},
-                   {LagCorrection::drift, 35, 1.75, 0.125, 0.25, 0.0625}};
+                   {LagCorrection::pooled, 35, 1.75, 0.125, 0.25, 0.0625}};
   for (const Trajectory& run : runs) {
     RunLag& entry = report.runs.emplace_back();
     entry.run = run.run;
     entry.status = run.role == Role::train ? LagStatus::at_edge : LagStatus::not_estimated;
     entry.lag_s = run.role == Role::train ? -0.75 : not_a_number;
-    entry.match_windows = 3;
     entry.applied_lag_s = run.lag_s;
-    entry.applied_clock_drift = 2e-3;
   }
   return report;
 }
@@ -77,7 +74,6 @@ WindowFits make_windows_fits(const LinearStructure& structure) {
   fits.status = Eigen::VectorXi::LinSpaced(count, 0, 3);
   fits.r_squared = share_pattern(n, count, 12.0);
   fits.r_squared(0, 1) = not_a_number;
-  fits.aic = pattern(count, 1, 13.0);
   fits.transitions = Eigen::VectorXi::Constant(count, length);
   fits.weighed_information = pattern(fits.structure.states, count, 14.0);
   fits.prior_sd = pattern(p, 1, 8.0);
@@ -197,7 +193,7 @@ Bank make_drifting(const LinearStructure& structure) {
   bank.state_names.assign(static_cast<std::size_t>(structure.states), "wz");
   bank.input_names.assign(static_cast<std::size_t>(structure.inputs), "u");
   bank.dt_s = 0.125;
-  bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), Wandering::all, {2.75, 321, {"p0"}}};
+  bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), Wandering::all, {2.75, 321}};
   bank.running_noise = {0.75, 5.0, pattern(structure.states, 1, 98.0), {{5, 1.25}, {10, 2.5}}};
   return bank;
 }
@@ -234,15 +230,14 @@ Archive full_archive(Index n, Index m) {
       {{"Boost", "1.74.0"}, {"Ceres", "2.1.0"}, {"compiler", "GCC 12.2"}},
       {{"/data/pro_00.csv", 9007199254740993u, std::string(64, '1')}, {"/data/Gelände.csv", 12, std::string(64, '2')}}};
   archive.config = "[window]\nlength = 5  # fünf\n";
-  const LinearStructure structure{n, m, m == 1};
+  LinearStructure structure{n, m, m == 1};
+  if (m > 1) structure.input_delay = InputDelays({1, 4});
   archive.recording = make_recording(n, m);
   archive.lag = make_lag_report(archive.recording->runs);
   archive.windows = make_windows_fits(structure);
   archive.mixture = make_mixture(*archive.windows);
   archive.bank = make_bank(structure, modes, true);
   archive.unrefined = make_bank(structure, 1, false);
-  archive.merging = {{Role::train, 7, 6, modes, 300, 1.25, 1.125, 0.125},
-                     {Role::test, 7, 6, modes, 299, 1.5, 1.75, -0.25}};
   archive.measured_fit = MeasuredFit::iteration_limit;
   archive.learned_transitions = 40;
   archive.mode_names = {"ice", "", "Gelände, \"naß\""};

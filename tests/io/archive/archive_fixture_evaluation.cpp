@@ -110,7 +110,6 @@ DiagnosticsRow make_diagnostics(const std::string& filter, Index mode, Index n) 
           0.4,
           0.63,
           5,
-          0.1,
           Calibration::overconfident,
           "probabilities flat; heavy tails"};
 }
@@ -154,10 +153,10 @@ void add_evaluation(Archive& archive) {
     for (const Trajectory& run : archive.recording->runs)
       archive.evaluations.back().free_runs.push_back(make_free_run(n, run.samples(), count));
     archive.free_runs.push_back(make_free_run_row(filter, n));
-    archive.horizons.push_back({filter, Role::test, "*", 5, 18, 1.5, pattern(n, 1, 84.0)});
+    archive.horizons.push_back({filter, Role::test, "*", 5, 18, 1.5, pattern(n, 1, 84.0), 0.93});
     archive.diagnostics.push_back(make_diagnostics(filter, count - 1, n));
   }
-  archive.horizons.push_back({"combined", Role::test, "*", 5, 18, 1.75, pattern(n, 1, 85.0)});
+  archive.horizons.push_back({"combined", Role::test, "*", 5, 18, 1.75, pattern(n, 1, 85.0), 0.94});
   archive.combination = {{Role::test, 5, "bank", 0.75, 0.5}, {Role::test, 5, "baseline", 0.25, 0.5}};
   archive.left_out = {{"bank", 5, 17, 1.25, pattern(n, 1, 86.0), 0.5},
                       {"baseline", 5, 17, 1.0, pattern(n, 1, 87.0), 0.5}};

@@ -1,5 +1,6 @@
 #include "io/csv/csv.hpp"
 
+#include "io/csv/csv_head.hpp"
 #include "io/table/number.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/io/import/expect_error.hpp"
@@ -161,19 +162,20 @@ TEST(Csv, HeaderOfAFile) {
                    "\n\xEF\xBB\xBF"
                    "a\n");
   test::write_file(folder.path() / "g.csv", "a, \"b, \"\"c\"\"\nd\" ,e\n1,2\",3\n");
-  EXPECT_THAT(read_csv_header(folder.path() / "g.csv"), ElementsAre("a", "b, \"c\"\nd", "e"))
+  EXPECT_THAT(read_csv_head(folder.path() / "g.csv", {}).names, ElementsAre("a", "b, \"c\"\nd", "e"))
       << "the broken row after the header is not its concern";
   std::string wide = "a0";
   for (int i = 1; i < 20000; ++i) wide += ",a" + std::to_string(i);
   test::write_file(folder.path() / "wide.csv", wide + "\n");
-  EXPECT_EQ(read_csv_header(folder.path() / "wide.csv").size(), 20000);
+  EXPECT_EQ(read_csv_head(folder.path() / "wide.csv", {}).names.size(), 20000);
 }
 
 TEST(Csv, UnreadableFiles) {
   const test::TemporaryFolder folder;
-  EXPECT_THAT(message_of<ConfigurationError>([&] { read_csv_header(folder.path() / "absent.csv"); }),
+  EXPECT_THAT(message_of<ConfigurationError>([&] { read_csv_head(folder.path() / "absent.csv", {}).names; }),
               testing::AllOf(HasSubstr((folder.path() / "absent.csv").string()), HasSubstr("No such file")));
-  EXPECT_THAT(message_of<ConfigurationError>([&] { read_csv_header(folder.path()); }), HasSubstr("Is a directory"));
+  EXPECT_THAT(message_of<ConfigurationError>([&] { read_csv_head(folder.path(), {}).names; }),
+              HasSubstr("Is a directory"));
 }
 
 }  // namespace

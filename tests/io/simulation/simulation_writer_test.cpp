@@ -2,6 +2,7 @@
 
 #include "ident/base/seed.hpp"
 #include "io/csv/csv.hpp"
+#include "io/csv/csv_head.hpp"
 #include "io/files/read_file.hpp"
 #include "io/simulation/simulation_files.hpp"
 #include "tests/io/import/import_fixture.hpp"
@@ -84,9 +85,9 @@ TEST_F(SimulationWriter, KeepsAllSamplesAtOtherRates) {
 TEST_F(SimulationWriter, WritesTheTwoFilesOfEveryRun) {
   write_simulation({make_run(3, 0), make_run(3, 1)}, layout);
   EXPECT_THAT(files(), ElementsAre("imu_00.csv", "imu_01.csv", "pro_00.csv", "pro_01.csv")) << "and no temporary ones";
-  EXPECT_THAT(read_csv_header(layout.folder / "pro_00.csv"),
+  EXPECT_THAT(read_csv_head(layout.folder / "pro_00.csv", {}).names,
               ElementsAre("time", "velL", "velR", "true_wz", "true_vx", "mode"));
-  EXPECT_THAT(read_csv_header(layout.folder / "imu_00.csv"), ElementsAre("time", "wz", "vx"));
+  EXPECT_THAT(read_csv_head(layout.folder / "imu_00.csv", {}).names, ElementsAre("time", "wz", "vx"));
 }
 
 TEST_F(SimulationWriter, WritesModesAndExtendsTheStates) {

@@ -83,19 +83,12 @@ function modeTables(bank) {
 }
 
 function bankFacts(bank) {
-  const {merged} = bank;
   const refined = 'refined by expectation-maximisation, so they differ from the mixture’s components';
-  const limit = merged &&
-      `${merged.components} components merged; log score on ${roleNames[bank.role]} ` +
-          `${merged.log_score.t}, without the limit (${merged.modes_unlimited} modes) ${
-              merged.log_score_unlimited.t}: ` +
-          `a loss of ${merged.loss.t} nats per sample`;
   return facts([
     ['Model', bank.model],
     ['Sample period', `${bank.dt_s.t} s`],
     [bank.noise_variance_name, bank.R.t],
     ['Modes are', bank.refined ? refined : 'the mixture’s components'],
-    ['Limit on modes', limit],
   ]);
 }
 

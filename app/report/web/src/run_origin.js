@@ -51,5 +51,5 @@ export function drawOrigin(origin) {
                                  null,
       details(`${origin.inputs.length} input files`, table(fileColumns, origin.inputs, {caption: 'Input files'})),
       details('Versions', facts(origin.versions)),
-      details('The summary as the program prints it, with its audit', listing(origin.summary)));
+      details('The summary as the program prints it', listing(origin.summary)));
 }

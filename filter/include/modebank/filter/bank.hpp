@@ -7,6 +7,7 @@
 
 #include "modebank/base/matrix.hpp"
 #include "modebank/filter/wandering.hpp"
+#include "modebank/ident/input_delays.hpp"
 
 namespace modebank {
 struct Bank;
@@ -87,7 +88,7 @@ struct BankDescription {
   std::ptrdiff_t state_lags = 1;                        ///< number of state samples from which the next one is
                                                         ///< predicted
   std::ptrdiff_t input_lags = 1;                        ///< number of input samples that act on one transition
-  std::ptrdiff_t input_delay = 1;                       ///< number of samples from an input to its first effect
+  InputDelays input_delay = 1;                          ///< number of samples from each input to its first effect
   bool intercept = false;                               ///< whether c is part of theta
   NoiseMemory noise_memory;                             ///< used by filters with adaptive noise
   NoiseByState noise_by_state;                          ///< empty: constant

@@ -68,8 +68,8 @@ class BankFilter {
   /// filter does not change. One step ahead, the result equals the prediction of the next step. Further ahead, it is
   /// the prediction that `judge` scores at that horizon. Column i of `inputs` (inputs() x c) is the planned input of
   /// the sample i + 1 ahead, as it will be passed to step. An input first acts input_delay samples later, so c = steps
-  /// - input_delay columns are enough. Throws std::invalid_argument for steps below 1 and for missing or non-finite
-  /// inputs. Allocates.
+  /// - the smallest input_delay columns are enough. Throws std::invalid_argument for steps below 1 and for missing or
+  /// non-finite inputs. Allocates.
   std::vector<Forecast> forecast(const Matrix& inputs, std::ptrdiff_t steps) const;
   /// The complete state of the filter as numbers for storage; some are NaN. It does not contain estimate().
   std::vector<double> snapshot() const;

@@ -8,7 +8,6 @@
 #include "modebank/filter/bank.hpp"
 #include "modebank/filter/screened_mode.hpp"
 #include "modebank/ident/motion_model.hpp"
-#include "modebank/ident/window_audit.hpp"
 #include "modebank/learn/options.hpp"
 #include "modebank/learn/results.hpp"
 #include "modebank/mixture/mixture.hpp"
@@ -31,7 +30,6 @@ struct Uncertainty {
 
 /// How the bank was learned from M windows.
 struct Origin {
-  WindowAudit windows;                ///< number of windows per solver, and tolerances
   std::vector<std::string> features;  ///< F, clustered features of a window
   mixture::Mixture mixture;           ///< mixture of the windows
   std::vector<Candidate> candidates;  ///< candidates for the mixture

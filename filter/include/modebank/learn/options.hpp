@@ -109,10 +109,8 @@ struct BankOptions {
   double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, R of the baseline is used
   bool screen = true;                          ///< whether unstable and starved modes are removed
-  std::ptrdiff_t modes = 0;  ///< largest number of modes; 0 for no limit. Above the limit, the closest components are
-                             ///< merged
-  Refine refine = Refine::automatic;  ///< whether the bank is refined by expectation-maximisation
-  RefineOptions em;                   ///< options of the refinement
+  Refine refine = Refine::automatic;           ///< whether the bank is refined by expectation-maximisation
+  RefineOptions em;                            ///< options of the refinement
 };
 
 /// All options of learning from runs. `modebank run` finds lags, delay and windows from the data unless they are given.

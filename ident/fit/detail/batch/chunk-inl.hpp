@@ -9,7 +9,6 @@
 #include <hwy/highway.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "ident/fit/detail/batch/kernel-inl.hpp"
 
@@ -104,25 +103,6 @@ HWY_INLINE void write_verdicts(const Settings& settings, const Fit<Q>& fit, Inde
   }
 }
 
-/// akaike_criterion of ident/fit/describe.hpp for one state, from sums. The host computes the logarithms.
-template <int Q>
-HWY_NOINLINE void write_criterion(const Settings& settings, const Fit<Q>& fit, Index count, double* out) {
-  if (!out) return;
-  HWY_ALIGN double samples[widest], sigma[widest], deviance[widest], data_parameters[widest], price[widest];
-  hn::Store(fit.samples, D(), samples);
-  hn::Store(fit.sigma, D(), sigma);
-  hn::Store(fit.deviance, D(), deviance);
-  hn::Store(fit.data_parameters, D(), data_parameters);
-  hn::Store(fit.price, D(), price);
-  const bool gaussian = settings.loss == Loss::trivial;
-  for (Index i = 0; i < count; ++i) {
-    const double variance = std::max(deviance[i] / samples[i], settings.floor * settings.floor);
-    out[i] = gaussian ? samples[i] * (log_two_pi + std::log(variance) + 1.0) + 2.0 * (data_parameters[i] + 1.0)
-                      : samples[i] * (log_two_pi + 2.0 * std::log(sigma[i])) + deviance[i] / (sigma[i] * sigma[i]) +
-                            2.0 * (price[i] * data_parameters[i] + 1.0);
-  }
-}
-
 template <int Q>
 HWY_NOINLINE void write(const Settings& settings, const Fit<Q>& fit, Index first, Index count, const Output& out) {
   const auto from = [](double* array, Index offset) { return array ? array + offset : nullptr; };
@@ -133,13 +113,11 @@ HWY_NOINLINE void write(const Settings& settings, const Fit<Q>& fit, Index first
       scatter(fit.covariance.a[at(i, j)], count, from(out.covariance, first * Q * Q + i * Q + j), Q * Q);
       if (i != j) scatter(fit.covariance.a[at(i, j)], count, from(out.covariance, first * Q * Q + j * Q + i), Q * Q);
     }
-  scatter(fit.search.gradient, count, from(out.gradient, first), 1);
   scatter(fit.noise_variance, count, from(out.noise_variance, first), 1);
   scatter(fit.condition, count, from(out.condition, first), 1);
   scatter(fit.inlier_fraction, count, from(out.inlier_fraction, first), 1);
   scatter(fit.r_squared, count, from(out.r_squared, first), 1);
   scatter(fit.weighed_information, count, from(out.weighed_information, first), 1);
-  write_criterion(settings, fit, count, from(out.aic, first));
   for (int j = 0; j < Q; ++j) scatter(fit.information[j], count, from(out.information, first * Q + j), Q);
 }
 
@@ -152,8 +130,7 @@ HWY_NOINLINE void solve_chunk(const Settings& settings, const Chunk& chunk, doub
     const View view = settings.step == 1 ? contiguous_view(settings, chunk, first)
                                          : transposed_view(settings, chunk, first, side_by_side);
     Fit<Q> fit;
-    fit_group<Q, LossT, FirstLoss>(settings, view, hn::FirstN(D(), static_cast<std::size_t>(count)), chunk.sigma,
-                                   scratch, fit);
+    fit_group<Q, LossT, FirstLoss>(settings, view, hn::FirstN(D(), static_cast<std::size_t>(count)), scratch, fit);
     write(settings, fit, first, count, out);
   }
 }

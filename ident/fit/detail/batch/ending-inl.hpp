@@ -18,14 +18,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 struct Ending {
   V psi_square, slope, slope_square, weighted_square, inliers;
   V omega, omega_y, omega_y_square;  // y is taken relative to the window's first increment
-  V cost;                            // sum rho, zero for zero residuals
 };
 
-/// An absent transition must not change the sums. Its residual is set to zero: then rho is 0, and slope and omega are
-/// 1.
+/// An absent transition must not change the sums. Its residual is set to zero: then slope and omega are 1.
 template <int Q, class LossT>
 HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (&theta)[Q]) {
-  Ending e{zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()};
+  Ending e{zero(), zero(), zero(), zero(), zero(), zero(), zero(), zero()};
   const V one = splat(1.0), first = row(view, view.increments, 0);
   for (Index i = 0; i < view.length; ++i) {
     V x[Q];
@@ -42,7 +40,6 @@ HWY_NOINLINE Ending residual_sums(const View& view, const LossT& loss, const V (
     e.omega = hn::Add(e.omega, omega);
     e.omega_y = hn::MulAdd(omega, about, e.omega_y);
     e.omega_y_square = hn::MulAdd(hn::Mul(omega, about), about, e.omega_y_square);
-    e.cost = hn::Add(e.cost, cost_above_zero(loss, r, t));
   }
   return e;
 }

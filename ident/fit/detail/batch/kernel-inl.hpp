@@ -21,23 +21,16 @@ template <int Q>
 struct Fit {
   Search<Q> search;
   Symmetric<Q> covariance;
-  V noise_variance, condition, rank, inlier_fraction, r_squared, weighed_information;
-  V samples, sigma, deviance, data_parameters, price;  // inputs of Akaike's criterion
+  V noise_variance, condition, rank, inlier_fraction, r_squared, weighed_information, samples;
   V information[Q];
   M clear, enough, reached, deficient;
 };
 
-/// R^2 and the parts of Akaike's criterion, as defined in ident/fit/describe.hpp.
-template <int Q>
-HWY_INLINE void describe_quality(const Settings& settings, const Ending& e, V f, V sigma, Fit<Q>& fit) {
+/// R^2, as defined in ident/fit/describe.hpp.
+HWY_INLINE V r_squared(const Ending& e) {
   const V nan = splat(std::numeric_limits<double>::quiet_NaN());
   const V total = hn::NegMulAdd(e.omega_y, hn::Div(e.omega_y, e.omega), e.omega_y_square);
-  fit.r_squared = hn::IfThenElse(hn::Gt(total, zero()), hn::Sub(splat(1.0), hn::Div(e.weighted_square, total)), nan);
-  fit.sigma = sigma;
-  fit.data_parameters = f;
-  fit.deviance = settings.loss == Loss::trivial ? e.weighted_square : e.cost;
-  fit.price =
-      hn::IfThenElse(hn::Gt(e.slope, zero()), hn::Div(hn::Div(e.psi_square, hn::Mul(sigma, sigma)), e.slope), nan);
+  return hn::IfThenElse(hn::Gt(total, zero()), hn::Sub(splat(1.0), hn::Div(e.weighted_square, total)), nan);
 }
 
 HWY_INLINE M finite(V x) { return hn::Lt(hn::Abs(x), splat(std::numeric_limits<double>::infinity())); }
@@ -57,7 +50,7 @@ HWY_INLINE void describe(const Settings& settings, const View& view, const LossT
   const V divisor = hn::Mul(hn::Sub(start.count, start.rank), splat(settings.consistency));
   fit.noise_variance = hn::Max(hn::Div(e.weighted_square, divisor), splat(settings.floor * settings.floor));
   fit.inlier_fraction = hn::Div(e.inliers, start.count);
-  describe_quality(settings, e, f, start.sigma, fit);
+  fit.r_squared = r_squared(e);
   for (int j = 0; j < Q; ++j) {
     const V sd = splat(settings.prior ? settings.prior_sd[j] : std::numeric_limits<double>::quiet_NaN());
     fit.information[j] = hn::Sub(splat(1.0), hn::Div(fit.covariance.a[at(j, j)], hn::Mul(sd, sd)));
@@ -104,9 +97,8 @@ HWY_INLINE void require_finite(Fit<Q>& fit) {
 }
 
 template <int Q, class LossT, class FirstLoss>
-HWY_INLINE void fit_group(const Settings& settings, const View& view, M wanted, double sigma, double* scratch,
-                          Fit<Q>& fit) {
-  Start<Q> start = prepare<Q>(settings, view, wanted, sigma, scratch);
+HWY_INLINE void fit_group(const Settings& settings, const View& view, M wanted, double* scratch, Fit<Q>& fit) {
+  Start<Q> start = prepare<Q>(settings, view, wanted, scratch);
   const Surroundings<Q> around = surround(settings, start);
   for (int j = 0; j < Q; ++j) fit.search.theta[j] = start.theta[j];
   fit.enough = hn::Gt(start.count, splat(Q));
@@ -115,7 +107,6 @@ HWY_INLINE void fit_group(const Settings& settings, const View& view, M wanted, 
   fit.condition = start.condition;
   fit.rank = start.rank;
   fit.samples = start.count;
-  fit.search.gradient = zero();
   M live = hn::And(hn::And(wanted, fit.enough), fit.clear);
   if (!settings.prior) live = hn::AndNot(fit.deficient, live);
   const LossT loss = make_loss<LossT>(settings.loss, hn::Mul(splat(settings.loss_scale), start.sigma));

@@ -212,12 +212,6 @@ struct AnyLoss {
   };
 };
 
-/// rho without the constant offset that Cost leaves out.
-template <class LossT>
-HWY_INLINE V cost_above_zero(const LossT& loss, V r, const LossTerms& at_r) {
-  return hn::Sub(rho_of(loss, r, at_r), rho_of(loss, zero(), loss.terms(zero())));
-}
-
 }  // namespace modebank::batch::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 

@@ -48,7 +48,6 @@ struct Surroundings {
 template <int Q>
 struct Search {
   V theta[Q];
-  V gradient;  // gradient relative to |psi|, before the last step
 };
 
 /// The prior's cost sum_j P_j (theta_j - mean_j)^2. Adds its gradient, too.
@@ -134,7 +133,6 @@ HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<
     const V enough = hn::Max(hn::Mul(splat(stationary_square), scale),
                              hn::Mul(splat(rounding_square), magnitude(around.gram, around.square_sum, theta)));
     const M done = hn::And(hn::And(accepted, usable), hn::Le(gain, enough));
-    search.gradient = hn::IfThenElse(accepted, hn::Div(gain, scale), search.gradient);
 
     halvings = hn::IfThenElse(worse, hn::Add(halvings, splat(1.0)), zero());
     for (int j = 0; j < Q; ++j) {
@@ -145,7 +143,6 @@ HWY_NOINLINE M minimise(const View& view, const LossT& loss, const Surroundings<
     const M lost = hn::Or(hn::Gt(halvings, splat(max_halvings)), hn::AndNot(usable, accepted));
     live = hn::AndNot(hn::Or(done, lost), live);
   }
-  search.gradient = hn::Sqrt(hn::Max(search.gradient, zero()));
   return reached;
 }
 

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "ident/base/log_two_pi.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/model/local_model.hpp"
 #include "ident/model/transitions.hpp"
@@ -33,7 +32,7 @@ struct Settings {
   double loss_scale = huber_tuning;   ///< tuning constant c in units of sigma
   double huber_scale = huber_tuning;  ///< Huber threshold of the first stage; non-convex losses start from its optimum
   double consistency = 1.0;           ///< result of `gaussian_consistency` for the loss
-  bool own_scale = true;              ///< whether each window has its own sigma; else Chunk::sigma is used
+  double sigma = 0.0;                 ///< sigma of all windows; 0: each window has its own
   double floor = 0.0;                 ///< smallest sigma
   bool prior = false;
   double prior_mean[max_regressors] = {};
@@ -52,7 +51,6 @@ struct Chunk {
   const double* increments = nullptr;
   const double* present = nullptr;  ///< 1 per transition, or 0 for an excluded transition, whose regressors and
                                     ///< increment are then 0; may be null
-  double sigma = 1.0;               ///< sigma of windows without their own scale
 };
 
 /// How the solver ended for a window. Ceres solves all windows with other verdicts than `solved`.
@@ -69,12 +67,10 @@ struct Output {
   double* information = nullptr;          ///< p
   double* inlier_fraction = nullptr;      ///< 1
   double* r_squared = nullptr;            ///< 1
-  double* aic = nullptr;                  ///< 1
   double* weighed_information = nullptr;  ///< 1
   int* transitions = nullptr;
   int* rank = nullptr;
   int* status = nullptr;
-  double* gradient = nullptr;  ///< relative gradient at theta before the last Newton step (tests and benchmarks)
 };
 
 /// Scratch vectors per row of a window: staged columns, an orthogonal basis and residuals.

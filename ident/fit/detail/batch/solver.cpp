@@ -103,7 +103,7 @@ bool BatchSolver::handles(const LinearStructure& structure, Index length) {
 BatchSolver::BatchSolver(batch::Settings settings) : settings_(std::move(settings)), kernel_(choose_kernel(settings_)) {
   if (!kernel_ || settings_.length <= settings_.regressors || settings_.length > longest_window)
     throw std::invalid_argument("the batch solver has no kernel for these windows");
-  if (settings_.own_scale && settings_.sort.empty()) {
+  if (settings_.sigma == 0.0 && settings_.sort.empty()) {
     settings_.sort = sorting_network(settings_.length);
     settings_.median = median_network(settings_.sort, settings_.length);
   }
@@ -119,7 +119,7 @@ batch::Settings batch_settings(const LinearStructure& structure, const FitOption
   settings.loss = options.loss;
   settings.loss_scale = loss.scale();
   settings.consistency = gaussian_consistency(loss, structure.states);
-  settings.own_scale = options.scale == ScaleSource::window;
+  settings.sigma = options.sigma;
   settings.floor = floor;
   settings.covariance = options.covariance;
   settings.max_iterations = options.max_iterations;

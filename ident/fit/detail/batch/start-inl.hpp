@@ -99,15 +99,16 @@ HWY_NOINLINE void take(M lanes, const Start<Q>& other, Start<Q>& start) {
 /// Least squares, rank and scale. Well-conditioned lanes (the usual case) use normal equations; the other lanes use
 /// orthogonalisation.
 template <int Q>
-HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M wanted, double sigma, double* scratch) {
+HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M wanted, double* scratch) {
   const D d;
+  const bool own_scale = settings.sigma == 0.0;
   const Index lanes = static_cast<Index>(hn::Lanes(d));
   double* const rows = scratch + view.length * lanes * (Q + 1);
   Start<Q> start;
   M unsafe = wanted;
   if constexpr (Q <= 3) {
     unsafe = hn::AndNot(prepare_by_gram(view, start), wanted);
-    if (settings.own_scale)
+    if (own_scale)
       for (Index i = 0; i < view.length; ++i) {
         V x[Q];
         for (int j = 0; j < Q; ++j) x[j] = row(view, view.regressors[j], i);
@@ -121,15 +122,15 @@ HWY_NOINLINE Start<Q> prepare(const Settings& settings, const View& view, M want
       take(unsafe, other, start);
     else
       start = other;
-    if (settings.own_scale)
+    if (own_scale)
       for (Index i = 0; i < view.length; ++i) {
         const V r = hn::Load(d, scratch + (i * (Q + 1) + Q) * lanes);
         hn::Store(hn::IfThenElse(unsafe, r, hn::Load(d, rows + i * lanes)), d, rows + i * lanes);
       }
   }
   start.count = sample_count(view);
-  start.sigma = splat(sigma);
-  if (!settings.own_scale) return start;
+  start.sigma = splat(settings.sigma);
+  if (!own_scale) return start;
   const V mad = normalised_mad(settings, view, rows, start.count);
   const V factor = hn::Sqrt(hn::Div(start.count, hn::Sub(start.count, start.rank)));
   start.sigma = hn::Max(hn::Mul(mad, factor), splat(settings.floor));

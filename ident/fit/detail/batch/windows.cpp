@@ -1,21 +1,10 @@
 #include "ident/fit/detail/batch/windows.hpp"
 
-#include <sstream>
 #include <string>
 
-#include "ident/fit/constants.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
-
-namespace {
-
-double sigma_of_run(const LinearWindows& windows, Index run) {
-  if (windows.options().scale == ScaleSource::fixed) return windows.options().sigma;
-  return windows.options().scale == ScaleSource::run ? windows.run_scale(run)(0) : 1.0;
-}
-
-}  // namespace
 
 std::unique_ptr<BatchWindows> BatchWindows::make(const LinearWindows& windows, Index count,
                                                  const ParameterPrior* prior) {
@@ -33,18 +22,11 @@ std::unique_ptr<BatchWindows> BatchWindows::make(const LinearWindows& windows, I
 BatchWindows::BatchWindows(const LinearWindows& windows, const ParameterPrior* prior)
     : windows_(windows), solver_(batch_settings(windows.structure(), windows.options(), prior, windows.floor()(0))) {}
 
-std::string BatchWindows::method() {
-  std::ostringstream words;
-  words << "Newton's method to a relative gradient of " << stationary_gradient;
-  return words.str();
-}
-
 const std::vector<batch::Verdict>& BatchWindows::solve(const WindowPlan::Range& range, batch::Output out) {
   Worker& worker = workers_.local();
   const batch::Settings& settings = solver_.settings();
-  batch::Chunk chunk = worker.workspace.stage(windows_.run_of(range.window), range.window.start, range.count,
-                                              windows_.structure(), settings);
-  chunk.sigma = sigma_of_run(windows_, range.window.run);
+  const batch::Chunk chunk = worker.workspace.stage(windows_.run_of(range.window), range.window.start, range.count,
+                                                    windows_.structure(), settings);
   out.verdict = worker.verdict.data();
   solver_(chunk, worker.workspace.scratch(settings.length), out);
   return worker.verdict;
@@ -58,7 +40,6 @@ batch::Output columns_from(WindowFits& fits, Index i) {
           .information = fits.information.col(i).data(),
           .inlier_fraction = fits.inlier_fraction.data() + i,
           .r_squared = fits.r_squared.col(i).data(),
-          .aic = fits.aic.data() + i,
           .weighed_information = fits.weighed_information.col(i).data(),
           .transitions = fits.transitions.data() + i,
           .rank = fits.rank.data() + i,

@@ -3,7 +3,6 @@
 #include <tbb/enumerable_thread_specific.h>
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "ident/fit/detail/batch/solver.hpp"
@@ -20,9 +19,6 @@ class BatchWindows {
   /// The solver for `count` windows; null if the windows are left to Ceres (WindowSolver). `prior` may be null. Throws
   /// ConfigurationError for WindowSolver::batch without a matching kernel.
   static std::unique_ptr<BatchWindows> make(const LinearWindows& windows, Index count, const ParameterPrior* prior);
-
-  /// Method and tolerance in words, for reports.
-  static std::string method();
 
   /// Solves a range of at most longest_range windows and writes the fits to `out`. The verdicts belong to the calling
   /// thread and are valid until its next call.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "modebank/base/names.hpp"
+#include "modebank/ident/input_delays.hpp"
 
 namespace modebank {
 
@@ -28,14 +29,6 @@ enum class CovarianceKind { model, sandwich };
 template <>
 struct EnumNames<CovarianceKind> {
   static constexpr Names<2> values{"model", "sandwich"};
-};
-
-/// Source of a window's residual scale sigma: the window's residuals, its run's residuals, or a given number.
-enum class ScaleSource { window, run, fixed };
-
-template <>
-struct EnumNames<ScaleSource> {
-  static constexpr Names<3> values{"window", "run", "fixed"};
 };
 
 /// Gaussian prior on a window's parameters: no prior, or a prior centred on the global model of all training runs.
@@ -62,26 +55,25 @@ inline constexpr std::ptrdiff_t most_ceres_windows = 20000;
 
 /// Options for cutting and fitting windows. Defaults are the recommended method.
 struct FitOptions {
-  std::string model = "linear";    ///< linear, varx (linear with lags), or the name of a motion model
-  std::ptrdiff_t state_lags = 1;   ///< varx: samples x[k], x[k-1], ... that predict x[k+1]
-  std::ptrdiff_t input_lags = 1;   ///< varx: number of input samples that act on one transition
-  std::ptrdiff_t input_delay = 1;  ///< varx: samples from an input to its first effect; 0: u[k+1] acts on x[k+1]
-  double wheel_radius_m = 1.0;     ///< motion models: converts wheel speeds from rad/s to m/s; 1 for inputs in m/s
-  std::ptrdiff_t length = 25;      ///< transitions per window
-  std::ptrdiff_t step = 1;         ///< transitions between window starts
-  Loss loss = Loss::huber;         ///< loss applied to each sample's residual
-  double loss_scale = 0.0;         ///< threshold of the robust loss in units of sigma; 0 gives 95 % efficiency at the
-                                   ///< normal distribution
-  ScaleSource scale = ScaleSource::window;  ///< source of the residual scale sigma
-  double sigma = 0.0;                       ///< residual standard deviation for ScaleSource::fixed [state unit], > 0
-  Prior prior = Prior::global;              ///< prior on a window's parameters
-  std::vector<double> prior_sd;  ///< p standard deviations; a single value holds for all parameters; if empty, 3 x the
-                                 ///< standard deviation over full-rank fits
-  bool intercept = false;        ///< whether linear models have a constant term c
+  std::string model = "linear";   ///< linear, varx (linear with lags), or the name of a motion model
+  std::ptrdiff_t state_lags = 1;  ///< varx: samples x[k], x[k-1], ... that predict x[k+1]
+  std::ptrdiff_t input_lags = 1;  ///< varx: number of input samples that act on one transition
+  InputDelays input_delay = 1;    ///< varx: samples from each input to its first effect
+  double wheel_radius_m = 1.0;    ///< motion models: converts wheel speeds from rad/s to m/s; 1 for inputs in m/s
+  std::ptrdiff_t length = 25;     ///< transitions per window
+  std::ptrdiff_t step = 1;        ///< transitions between window starts
+  Loss loss = Loss::huber;        ///< loss applied to each sample's residual
+  double loss_scale = 0.0;        ///< threshold of the robust loss in units of sigma; 0 gives 95 % efficiency at the
+                                  ///< normal distribution
+  double sigma = 0.0;             ///< residual standard deviation [state unit]; 0: estimated for each window
+  Prior prior = Prior::global;    ///< prior on a window's parameters
+  std::vector<double> prior_sd;   ///< p standard deviations; a single value holds for all parameters; if empty, 3 x the
+                                  ///< standard deviation over full-rank fits
+  bool intercept = false;         ///< whether linear models have a constant term c
   CovarianceKind covariance = CovarianceKind::model;  ///< reported covariance of theta
   int max_iterations = 100;                           ///< iteration limit of the solver
   WindowSolver solver = WindowSolver::automatic;      ///< solver of the window fits
-  std::uint64_t seed = 1;  ///< seed for the random choice of windows for the audit and the default prior
+  std::uint64_t seed = 1;                             ///< seed for the random choice of windows for the default prior
 };
 
 }  // namespace modebank

@@ -7,7 +7,6 @@
 #include "modebank/base/recording.hpp"
 #include "modebank/ident/motion_model.hpp"
 #include "modebank/ident/options.hpp"
-#include "modebank/ident/window_audit.hpp"
 
 namespace modebank::ident {
 
@@ -25,7 +24,6 @@ struct Windows {
   std::vector<WindowSolver> solver;  ///< M, solver of the window: ceres or batch
   std::vector<double> prior_sd;      ///< p, standard deviations of the prior; empty without a prior
   std::vector<double> global_theta;  ///< p, least-squares estimate over all training runs; also the prior's mean
-  WindowAudit audit;                 ///< number of windows per solver, and the solver's tolerance
 };
 
 /// The names that FitOptions::model accepts: linear, varx and modebank's motion models.

@@ -3,7 +3,6 @@
  * y: y0 [rad/s].
  * A[i][j] is in units of x[i] per x[j], B[i][j] of x[i] per u[j], c[i] of x[i], Q[i][j] of x[i] x[j]. */
 enum {
-  INPUT_DELAY = 1, /* samples from an input to its first effect */
   FIRST_TRANSITION = 1, /* of a run, by samples before it */
   ADAPTIVE_NOISE = 1,
   TRANSITION_BY_STATE = 1
@@ -17,6 +16,9 @@ static const double bank_noise_forgetting = 0.9375;
 
 /* samples at scale one that a start is worth */
 static const double bank_noise_prior_samples = 16.0;
+
+/* Samples from each input to its first effect */
+static const int bank_input_delay[] = {1};
 
 /* A = I + the archive's increment */
 static const double bank_A[MODES][STATES][STATES] = {

@@ -1,0 +1,102 @@
+#include "filter/learn/chain/armax_bank.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "ident/base/linalg.hpp"
+#include "ident/base/seed.hpp"
+
+namespace modebank {
+namespace {
+
+/// theta of LinearStructure, which orders inputs by lags first and predicts the increment.
+struct Parameters {
+  LinearStructure structure;
+  Eigen::VectorXd theta;
+  Eigen::MatrixXd covariance;
+};
+
+std::vector<Index> columns_of(const LinearStructure& s) {
+  std::vector<Index> columns;
+  for (Index j = 0; j < s.dimension(); ++j) columns.push_back(j);
+  for (Index lag = 0; lag < s.input_lags; ++lag)
+    for (Index i = 0; i < s.inputs; ++i) columns.push_back(s.dimension() + i * s.input_lags + lag);
+  if (s.intercept) columns.push_back(s.dimension() + s.acting_inputs());
+  return columns;
+}
+
+Parameters parameters_of(const ArmaxFit& fit, bool constant) {
+  const Index n = fit.theta.rows(), m = std::ssize(fit.delays), all = fit.covariance.rows() / n;
+  Parameters result;
+  result.structure = {n,
+                      m,
+                      constant,
+                      fit.order.state_lags,
+                      std::max<Index>(1, fit.order.input_lags),
+                      m > 0 ? InputDelays(fit.delays) : InputDelays()};
+  const std::vector<Index> columns = columns_of(result.structure);
+  Eigen::MatrixXd rows = fit.theta(Eigen::all, columns);
+  rows.leftCols(n) -= Eigen::MatrixXd::Identity(n, n);
+  result.theta = rows.reshaped<Eigen::RowMajor>();
+  std::vector<Index> at;
+  for (Index i = 0; i < n; ++i)
+    for (const Index column : columns) at.push_back(i * all + column);
+  result.covariance = fit.covariance(at, at);
+  return result;
+}
+
+/// Standard deviations of R's diagonal (n), from draws of theta, C and the covariance of the errors.
+Eigen::VectorXd errors_of_R(const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
+  constexpr Index draws = 200;
+  const Index n = fit.theta.rows(), q = fit.theta.cols(), p = fit.covariance.rows();
+  const Cholesky factor(fit.covariance);
+  if (!factor.definite()) return {};
+  std::mt19937_64 generator = make_generator(1, "noises of the linear stage");
+  std::normal_distribution<double> normal;
+  Eigen::MatrixXd drawn(n, draws);
+  for (Index d = 0; d < draws; ++d) {
+    const Eigen::VectorXd z = Eigen::VectorXd::NullaryExpr(p, [&] { return normal(generator); });
+    const Eigen::MatrixXd moved = (factor.L() * z).reshaped<Eigen::RowMajor>(n, p / n);
+    ArmaxFit other = fit;
+    other.theta += moved.leftCols(q);
+    for (std::size_t j = 0; j < other.C.size(); ++j) other.C[j] += moved.middleCols(q + static_cast<Index>(j) * n, n);
+    const Eigen::VectorXd size = Eigen::VectorXd::NullaryExpr(
+        n, [&] { return 1.0 + normal(generator) / std::sqrt(2.0 * static_cast<double>(fit.rows)); });
+    other.S = size.asDiagonal() * fit.S * size.asDiagonal();
+    drawn.col(d) = noises(other, stated_R).R;
+  }
+  const Eigen::MatrixXd about = drawn.colwise() - drawn.rowwise().mean();
+  return (about.rowwise().squaredNorm() / static_cast<double>(draws - 1)).cwiseSqrt();
+}
+
+}  // namespace
+
+Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
+  const ArmaxNoise noise = noises(fit, stated_R);
+  const Parameters own = parameters_of(fit, fit.order.has_constant());
+  const Parameters levels = fit.order.differences ? parameters_of(in_levels(fit), false) : own;
+  const Index p = levels.structure.parameters();
+  Bank bank = bank_frame(recording, levels.structure, noise.R.asDiagonal());
+  bank.model = levels.structure.lagged() ? "varx" : "linear";
+  Mode mode = make_mode(levels.structure, levels.theta, noise.Q.asDiagonal(), Eigen::MatrixXd::Zero(p, p),
+                        levels.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0);
+  if (!fit.delays.empty())
+    mode.response = step_response(own.structure, own.theta, own.covariance, fit.delays, bank.dt_s);
+  if (const Eigen::VectorXd errors = errors_of_R(fit, stated_R); errors.size() > 0)
+    bank.R_standard_error = errors.asDiagonal();
+  bank.modes.push_back(std::move(mode));
+  set_mode_sequence(bank, TransitionMatrix());
+  return bank;
+}
+
+std::optional<Bank> learn_armax(const Recording& recording, const ArmaxStructure& structure,
+                                const std::optional<Eigen::VectorXd>& stated_R) {
+  LinearStageOptions options;
+  options.only = structure;
+  const LinearStage stage = find_linear_stage(recording, options);
+  if (stage.candidates.empty()) return {};
+  return bank_of(recording, stage.fit(), stated_R);
+}
+
+}  // namespace modebank

@@ -1,0 +1,119 @@
+"""The plainest logs come out right by default: one linear plant with an offset, sensor noise, a dead time or a loop.
+
+Every log is v(k+1) = level + a (v(k) - level) + (1 - a) gain u(k+1-delay) + w(k), y(k) = v(k) + r(k), so gain and 63 %
+response time are known in closed form: dead time included, the response passes 1 - 1/e between two samples.
+"""
+import math
+
+from program import ProgramTest, attributes, h5py, main, modebank, np
+
+SAMPLES, RUNS = 800, 6
+
+
+def held(draw, count, low, high, values):
+    """An input that keeps each value for `low` to `high` samples."""
+    u = np.empty(0)
+    while len(u) < count:
+        u = np.append(u, np.full(draw.integers(low, high), draw.choice(values)))
+    return u[:count]
+
+
+def plant(draw, u, tau, gain, delay, level, noises):
+    """Measured states of one run. tau in samples; noises: standard deviations of w and r."""
+    a, v = math.exp(-1 / tau), np.full(len(u), float(level))
+    for k in range(1, len(u)):
+        v[k] = level + a * (v[k - 1] - level) + noises[0] * draw.standard_normal()
+        v[k] += (1 - a) * gain * (u[k - delay] if k >= delay else 0)
+    return v + noises[1] * draw.standard_normal(len(u))
+
+
+def response_time(tau, delay, dt):
+    """The time of this plant after a step at sample 0, by linear interpolation between samples."""
+    left = [math.exp(-j / tau) for j in range(int(5 * tau))]
+    j = next(j for j, value in enumerate(left) if value <= math.exp(-1))
+    return dt * (delay - 1 + j - 1 + (left[j - 1] - math.exp(-1)) / (left[j - 1] - left[j]) + 1)
+
+
+class PlainLogs(ProgramTest):
+    def write(self, run, dt, header, *columns):
+        lines = [header] + [f"{dt * k:.2f}," + ",".join(f"{value:.4f}" for value in row)
+                            for k, row in enumerate(zip(*columns))]
+        (self.folder / f"run_{run}.csv").write_text("\n".join([*lines, ""]))
+
+    def learned(self, *words):
+        """Attributes of /structure and arrays of /baseline."""
+        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
+        modebank("init", *files, "-o", "x.ini", "--force", cwd=self.folder)
+        modebank("identify", "x.ini", "--archive.output", "out.h5", "--force", *words, cwd=self.folder)
+        with h5py.File(self.folder / "out.h5") as file:
+            single = {name: item[()] for name, item in file["baseline"].items() if hasattr(item, "dtype")}
+        return attributes(self.folder / "out.h5", "structure"), single
+
+    def near(self, single, name, truth, share=0.05):
+        value, error = single[name].ravel()[0], single[name + "_standard_error"].ravel()[0]
+        self.assertLess(abs(value - truth), max(4 * error, 1e-3 * abs(truth)), f"{name} {value} +- {error}")
+        self.assertLess(error, share * abs(truth))
+
+    def test_a_heater_with_offset_sensor_noise_and_dead_time(self):
+        for run in range(RUNS):
+            draw = np.random.default_rng(run)
+            u = held(draw, SAMPLES, 20, 90, [0, 10, 20, 30, 40])
+            self.write(run, 1, "time,temperature_c,heater_w", plant(draw, u, 60, 0.8, 3, 20, (0.03, 0.1)), u)
+        structure, single = self.learned()
+        self.assertEqual((structure["noise_lags"], structure["differences"]), (1, 0))
+        self.assertEqual(attributes(self.folder / "out.h5", "baseline")["input_delay"].tolist(), [3])
+        self.near(single, "steady_gain", 0.8)
+        self.near(single, "response_time_s", response_time(60, 3, 1))
+        np.testing.assert_allclose(single["R"], 0.01, rtol=0.25)
+
+    def test_two_inputs_with_their_own_delays(self):
+        for run in range(RUNS):
+            draw = np.random.default_rng(50 + run)
+            u, v = (held(draw, SAMPLES, 10, 60, [-1, 0, 1]) for _ in range(2))
+            y = plant(draw, u, 20, 2.0, 1, 0, (0.02, 0.0)) + plant(draw, v, 20, -1.0, 4, 0, (0.0, 0.05))
+            self.write(run, 0.1, "time,speed,motor_v,brake_v", y, u, v)
+        _, single = self.learned("--data.input", "motor_v, brake_v")
+        self.assertEqual(attributes(self.folder / "out.h5", "baseline")["input_delay"].tolist(), [1, 4])
+        np.testing.assert_allclose(single["steady_gain"][0, 0], [2.0, -1.0], rtol=0.05)
+
+    def test_a_level_that_wanders_is_taken_in_differences(self):
+        for run in range(RUNS):
+            draw = np.random.default_rng(100 + run)
+            u = held(draw, SAMPLES, 20, 90, [0, 10, 20, 30, 40])
+            wander = np.cumsum(0.05 * draw.standard_normal(SAMPLES)) + 5 * draw.standard_normal()
+            y = plant(draw, u, 30, 0.8, 2, 20, (0.0, 0.1)) + wander
+            self.write(run, 1, "time,temperature_c,heater_w", y, u)
+        structure, single = self.learned()
+        self.assertEqual(structure["differences"], 1)
+        self.near(single, "steady_gain", 0.8, 0.2)
+
+    def loop(self, moves):
+        """Speed under a controller of the logged set point, throttle = 2 (set point - speed)."""
+        for run in range(RUNS):
+            draw = np.random.default_rng(200 + run)
+            target = np.round(held(draw, SAMPLES, 40, 160, draw.uniform(0, 4, 9)), 1) if moves else np.full(SAMPLES, 2.0)
+            y, u, v = np.zeros(SAMPLES), np.zeros(SAMPLES), 0.0
+            for k in range(SAMPLES):
+                y[k] = np.round(v + 0.02 * draw.standard_normal(), 3)
+                u[k] = 2 * (target[k] - y[k])
+                v = 0.9 * v + 0.1 * u[k] + 0.01 * draw.standard_normal()
+            self.write(run, 0.05, "time,speed_setpoint,speed,throttle", target, y, u)
+
+    def test_a_set_point_that_acts_through_the_actuator_is_left_out(self):
+        self.loop(moves=True)
+        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
+        told = modebank("run", *files, "--data.input", "throttle, speed_setpoint", "--archive.output", "out.h5", cwd=self.folder)
+        self.assertRegex(told.stdout, r"throttle = 2\.0+ \(speed_setpoint - speed\)")
+        with h5py.File(self.folder / "out.h5") as file:
+            self.assertGreater(file["baseline/steady_gain"].size, 0)
+
+    def test_a_set_point_at_rest_is_refused(self):
+        self.loop(moves=False)
+        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
+        message = modebank("run", *files, "--data.input", "throttle", cwd=self.folder, status=1).stderr
+        self.assertIn("throttle", message)
+        self.assertIn("set point", message)
+
+
+if __name__ == "__main__":
+    main()
