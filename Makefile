@@ -4,7 +4,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks guards uncertainty recovery evidence gyro-lost rule systems plants quantised scale cost features export-recovery check format lint shellcheck tidy tidy-changed strict seeds sanitize coverage arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini slurm shared-fs page-drag pages-large firefox
+.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks uncertainty recovery evidence rule systems plants scale cost features check format lint shellcheck tidy tidy-changed seeds sanitize arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini page-drag pages-large
 
 all: build
 
@@ -91,30 +91,22 @@ build/benchmarks/%.md: build FORCE
 	@cat $@
 FORCE:
 
-# Heading error after the gyro is lost, for docs/results/gyro_lost.md; five minutes of a processor.
-gyro-lost: build/benchmarks/gyro_lost.md
-
-# State-dependent transitions of known systems, over seeds; MODEBANK_DATA as for benchmarks.
-guards: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_guards.py build/modebank
-
-# Coverage of the stated 95 % regions, for docs/results/uncertainty.md.
+# Coverage of the stated 95 % regions, for docs/results/simulated.md.
 uncertainty: bench-programs
 	build/measure_coverage
 
-# How often the true number of modes is found, for docs/results/mixture.md.
+# How often the true number of modes is found, for docs/results/simulated.md.
 recovery: bench-programs
 	build/measure_recovery
 
 # How often modes are claimed where there are none, and found where there are some; hours on two cores.
 evidence: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table docs/results/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
+	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table build/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
 
-# How often the rule for additions to a bank accepts false ones, and true ones, for docs/results/rule.md; half an hour
-# of two processors.
+# How often the rule for additions to a bank accepts false ones, and true ones; half an hour of two processors.
 rule: bench-programs
-	build/measure_rule 60 > docs/results/rule.csv
-	/usr/bin/python3 tests/bench/rule_table.py docs/results/rule.csv
+	build/measure_rule 60 > build/rule.csv
+	/usr/bin/python3 tests/bench/rule_table.py build/rule.csv
 
 # Loss against the filter with the true parameters, for known systems; about three hours of a processor.
 systems: build
@@ -124,43 +116,19 @@ systems: build
 plants: build
 	/usr/bin/python3 tests/bench/plants.py build/modebank --seed $(or $(SEED),1)
 
-# Time and memory of five million rows and of ten thousand runs, for docs/results/scale.md; ten minutes of two
+# Time and memory of five million rows and of ten thousand runs, for docs/results/speed.md; ten minutes of two
 # processors and 10 GB of disk.
 scale: build
 	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
 
-# Processor time against states, lags and samples, for docs/results/cost.md; half an hour of a processor.
+# Processor time against states, lags and samples, for docs/results/speed.md; half an hour of a processor.
 cost: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_cost.py build/modebank build/cost
 
-# Which features of windows with many lags find the modes, for docs/results/mixture.md; ten minutes of a processor.
+# Which features of windows with many lags find the modes, for docs/results/simulated.md; ten minutes of a processor.
 features: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
 
-# Bias and stated uncertainty for rounded outputs, taken as intervals and as exact values.
-quantised: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_quantised.py build/modebank
-
-# How often robots with known width, delays and noise are within two standard errors of the numbers of `export --to
-# ros2`.
-export-recovery: packages-build packages-test build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
-	cmake --build --preset release -j $(JOBS) --target test_export_recovery
-	MODEBANK_EXPORT_SEEDS=1000 build/test_export_recovery
-
-# The commands of the how-to and lost nodes on a real Slurm of three nodes (slurmctld, slurmd, munge). The test starts
-# and ends them.
-slurm: packages-build packages-test packages-nightly build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
-	cmake --build --preset release -j $(JOBS) --target test_study_survival
-	CI=true MODEBANK_STUDY_REPEATS=42 build/test_study_survival --gtest_filter='StudySlurm*:*TwentyKilledWorkers*'
-
-# Studies of several machines on a file system without locks, with caches and different clocks; 40 machines are lost.
-# Mounts need root.
-shared-fs: packages-build packages-test packages-nightly build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
-	cmake --build --preset release -j $(JOBS) --target test_shared_fs
-	CI=true MODEBANK_SHARED_FS_ROUNDS=40 build/test_shared_fs
 
 # Everything that CI runs beside `make test`; .ci/run times each of these.
 CHECKS := test-long format lint shellcheck docs tidy-changed sanitize-short
@@ -175,8 +143,11 @@ list-checks:
 nightly: packages-build packages-test packages-check packages-nightly
 	tests/nightly $(STEPS)
 
-# Tests with the label nightly_KIND: browser, slurm, shared_fs, faults, tutorials.
-nightly-%: packages-check packages-nightly strict
+# Tests with the label nightly_KIND: browser, slurm, faults, tutorials. Everything is built, benchmarks, too, and a
+# warning is an error.
+nightly-%: packages-build packages-test packages-bench packages-check packages-nightly
+	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
+	cmake --build --preset release -j $(JOBS)
 	ctest --test-dir build -L '^nightly_$*$$' --no-tests=error --output-on-failure -j $(JOBS)
 
 # README's two commands in bare roots of Debian 12 and 13, or of one: SUITE=bookworm, SUITE=trixie; after a failure
@@ -193,19 +164,12 @@ api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
 
-# The pages of docs/, build/docs/index.html: built offline, a warning is an error. Checks spelling, and tables against
-# their commands.
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error. Checks spelling.
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
 	/usr/bin/python3 docs/check_spelling.py README.md docs
-	/usr/bin/python3 docs/check_results.py $(if $(wildcard $(DATA)/.),--data $(DATA)) docs/results/*.md
-
-# The search of the pages, used by a script in Chromium.
-.PHONY: docs-search
-docs-search: docs packages-nightly
-	/usr/bin/python3 docs/check_search.py build/docs
 
 # Runs what README and the tutorials print and compares the output; docs-update writes the present output into them.
 DATA := $(or $(MODEBANK_DATA),../shared/data)
@@ -215,10 +179,11 @@ docs-examples docs-update: packages-test packages-nightly build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# Words of the added lines (.ci/words), and style and types of the pages' scripts. NODE_PATH is where node finds
+# Common misspellings, and style and types of the pages' scripts. NODE_PATH is where node finds
 # Debian's modules.
+WORDS_THAT_ARE_RIGHT := fro,ist,lenght,nd,nees,positionof,siz,te,vell
 lint: packages-check
-	.ci/check-words
+	git ls-files '*.[ch]' '*.[ch]pp' '*.py' '*.js' '*.css' '*.sh' '*.cmake' '*CMakeLists.txt' Makefile .ci | xargs codespell -q 3 -L $(WORDS_THAT_ARE_RIGHT)
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
 	tsc --project app/report/web/tsconfig.json
 
@@ -236,16 +201,11 @@ tidy-changed: packages-build packages-check
 arm64: packages-build packages-arm64
 	.ci/arm64
 
-# The release build with benchmarks; CI=true and `sanitize`, too, make warnings errors.
-strict: packages-build packages-test packages-bench
-	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
-	cmake --build --preset release -j $(JOBS)
-
 # Recovery of known systems over many seeds.
 seeds: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
-	ctest --preset seeds -j $(JOBS)
+	ctest --test-dir build -L '^seeds$$' --output-on-failure -j $(JOBS)
 
 # Address and undefined-behaviour sanitizers: sanitize-short tests io and the filters' steps, as CI does; sanitize runs
 # all tests.
@@ -272,22 +232,13 @@ faults: packages-build packages-test build/build.ninja
 	cmake --build --preset release -j $(JOBS) --target test_faults
 	MODEBANK_FAULTS=all build/test_faults
 
-coverage: packages-build packages-test
-	cmake --preset coverage >/dev/null
-	cmake --build --preset coverage -j $(JOBS)
-	ctest --preset coverage -j $(JOBS)
-
-# Evenness of a page's plot during a drag over a million samples, for docs/results/speed.md.
+# Evenness of a page's plot during a drag over a million samples.
 page-drag: packages-nightly build
 	/usr/bin/python3 tests/bench/page_drag.py build/modebank build/page_drag
 
 # Pages of a study with 200 runs and of a million samples in Chromium; `make nightly` has all other pages, too.
 pages-large: packages-nightly build
 	/usr/bin/python3 tests/browser/pages_test.py build/modebank . build/pages_large LargePages
-
-# A page of every kind in Debian's Firefox; `make nightly` uses Chromium.
-firefox: packages-firefox build
-	/usr/bin/python3 tests/browser/firefox_test.py build/modebank . build/firefox
 
 # README's picture: a held-out run of the demo.
 picture: build

@@ -19,12 +19,12 @@ def comment(text):
 def main():
     print(HEAD, end="")
     section = None
-    for key, allowed, unit, default, text in program.key_rows():
-        if key.split(".")[0] != section:
-            section = key.split(".")[0]
+    for key in program.described()["keys"]:
+        if key["key"].split(".")[0] != section:
+            section = key["key"].split(".")[0]
             print(f"\n[{section}]")
-        print(comment(f"{text} ({allowed}{'; ' + unit if unit else ''})"))
-        print(f"{key.split('.')[1]} = {default}".rstrip())
+        print(comment(f"{key['help']} ({key['allowed']}{'; ' + key['unit'] if key['unit'] else ''})"))
+        print(f"{key['key'].split('.')[1]} = {key['default']}".rstrip())
 
 
 if __name__ == "__main__":

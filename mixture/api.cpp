@@ -48,7 +48,7 @@ Clusters select(const Points& points, const SelectionOptions& options, std::uint
     const Eigen::MatrixXd values = filled(points.values, "values"), errors = filled(points.errors, "errors");
     const Eigen::VectorXd weights = view(points.weights), typical_error = view(points.typical_error);
     const PointSet set(values, weights, errors, typical_error);
-    const Selection found = modebank::select(set, {points.effective_samples, points.runs}, options, seed);
+    const Selection found = modebank::select(set, points.effective_samples, options, seed);
     return Clusters{from_internal(found.mixture), found.candidates,
                     to_matrix(modebank::responsibilities(found.mixture, set))};
   });

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <utility>
-
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -22,74 +19,27 @@ double effective_samples(const FeatureCloud& cloud, Index length, Index step) {
   return std::min(static_cast<double>(cloud.runs.size()), sum);
 }
 
-double classification_cost(const GaussianMixture& mixture, const PointSet& points) {
-  double cost = 0.0;
-  visit_responsibilities(mixture, points, [&](Index first, const Eigen::Ref<const Eigen::MatrixXd>& columns) {
-    for (Index i = 0; i < columns.cols(); ++i) {
-      const double noise = mixture.noise.present() ? 1.0 - columns.col(i).sum() : 0.0;
-      const double weight = points.weights.size() > 0 ? points.weights(first + i) : 1.0;
-      cost -= weight * std::log(std::max(noise, columns.col(i).maxCoeff()));
-    }
-  });
-  return std::max(0.0, cost);
-}
-
-void fill_criteria(Candidate& candidate, double total_weight, double cost) {
+void fill_criteria(Candidate& candidate, double total_weight) {
   const double share = candidate.effective_samples / total_weight;
   const double q = static_cast<double>(candidate.parameters);
   const double deviance = -2.0 * share * candidate.log_likelihood;
   candidate.bic = deviance + q * std::log(candidate.effective_samples);
   candidate.aic = deviance + 2.0 * q;
-  candidate.icl = candidate.bic + 2.0 * share * cost;
   candidate.bic_naive = -2.0 * candidate.log_likelihood + q * std::log(total_weight);
 }
 
-double criterion_value(const Candidate& candidate, Criterion criterion) {
-  switch (criterion) {
-    case Criterion::bic:
-      return candidate.bic;
-    case Criterion::icl:
-      return candidate.icl;
-    case Criterion::heldout:
-      return -candidate.heldout;
-    case Criterion::bic_naive:
-      return candidate.bic_naive;
-  }
-  return not_a_number;
-}
-
-Index best_candidate(const std::vector<Candidate>& candidates, Criterion criterion) {
+Index best_candidate(const std::vector<Candidate>& candidates) {
   Index best = -1;
   const auto better = [&](const Candidate& a, const Candidate& b) {
     if (a.floor_active != b.floor_active) return b.floor_active;
-    return criterion_value(a, criterion) < criterion_value(b, criterion);
+    return a.bic < b.bic;
   };
   for (std::size_t i = 0; i < candidates.size(); ++i)
-    if (std::isfinite(criterion_value(candidates[i], criterion)) &&
+    if (std::isfinite(candidates[i].bic) &&
         (best < 0 || better(candidates[i], candidates[static_cast<std::size_t>(best)])))
       best = static_cast<Index>(i);
   return best;
 }
-
-namespace {
-
-/// A difference of held-out scores counts as chance if it is below this number of standard errors. The reason: the
-/// score is the best of up to twelve.
-constexpr double standard_errors = 2.0;
-
-std::string disagreement(const std::vector<Candidate>& candidates, const Candidate& selected) {
-  const Index best = best_candidate(candidates, Criterion::heldout);
-  if (best < 0) return "";
-  const Candidate& other = candidates[static_cast<std::size_t>(best)];
-  const double gain = other.heldout - selected.heldout;
-  if (!(gain > standard_errors * other.heldout_error)) return "";
-  return fmt::format(
-      "windows of left-out runs are more likely with {} components than with {}: by {:.3g} +- {:.2g} nats "
-      "per window",
-      other.components, selected.components, gain, other.heldout_error);
-}
-
-}  // namespace
 
 std::vector<std::string> selection_warnings(const std::vector<Candidate>& candidates) {
   std::vector<std::string> warnings;
@@ -113,7 +63,6 @@ std::vector<std::string> selection_warnings(const std::vector<Candidate>& candid
   if (least || selected + 1 == candidates.end())
     warnings.push_back(fmt::format("{} components are the {} of all candidates: widen the range of candidates",
                                    components, least ? "fewest" : "most"));
-  if (std::string text = disagreement(candidates, *selected); !text.empty()) warnings.push_back(std::move(text));
   return warnings;
 }
 

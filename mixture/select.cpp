@@ -12,13 +12,11 @@
 #include <string>
 #include <vector>
 
-#include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/base/work_counter.hpp"
 #include "mixture/criteria.hpp"
 #include "mixture/detail/cloud.hpp"
 #include "mixture/detail/whole_loop.hpp"
-#include "mixture/heldout.hpp"
 #include "mixture/reduction.hpp"
 #include "modebank/base/error.hpp"
 
@@ -28,8 +26,6 @@ using Eigen::Index;
 
 namespace {
 
-constexpr Index affordable_heldout = 20000;  // points
-
 /// Number of points that represent a cloud of more than most_compared points. Comparing candidates on this number takes
 /// a tenth of the time for 700,000 points.
 constexpr Index compared_part = 50'000;
@@ -37,13 +33,12 @@ constexpr Index compared_part = 50'000;
 struct FittedCandidate {
   GaussianMixture mixture;
   Candidate row;
-  HeldoutScore heldout = {};
 };
 
 /// The inputs that are the same for all candidates.
 struct Task {
   const PointSet& points;
-  const SampleDesign& design;
+  double effective_samples;  ///< 0 if all points are independent
   const SelectionOptions& options;
   std::uint64_t seed;
   const GaussianMixture* start;  ///< start of the first restart; may be null
@@ -83,7 +78,7 @@ Candidate unfitted(Candidate row, CandidateStatus status, std::string reason) {
   row.status = status;
   row.failed = std::move(reason);
   row.log_likelihood = -worst;
-  row.bic = row.aic = row.icl = row.bic_naive = worst;
+  row.bic = row.aic = row.bic_naive = worst;
   return row;
 }
 
@@ -92,19 +87,16 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   Candidate row;
   row.components = components;
   row.covariance = options.em.covariance;
-  row.heldout = not_a_number;
   row.restarts = options.em.restarts;
-  row.effective_samples = task.design.effective_samples > 0.0 ? task.design.effective_samples : task.total_weight;
+  row.effective_samples = task.effective_samples > 0.0 ? task.effective_samples : task.total_weight;
   if (components > task.distinct_points)
     return {{},
             unfitted(row, CandidateStatus::too_few_points,
                      fmt::format("only {} distinct points, fewer than components", task.distinct_points))};
   const bool given = task.start && task.start->components() == components;
   EmResult fit;
-  double cost = 0.0;
   try {
     fit = sweep.fit(components, task.seed_of(components), given ? task.start : nullptr);
-    cost = classification_cost(fit.mixture, task.points);
   } catch (const NotPositiveDefinite& error) {
     return {{}, unfitted(row, CandidateStatus::failed, error.what())};
   }
@@ -114,8 +106,8 @@ FittedCandidate fit_candidate(const Task& task, const EmSweep& sweep, Index comp
   row.converged = fit.converged;
   row.agreeing_restarts = fit.agreeing_restarts;
   row.floor_active = fit.floor_active;
-  fill_criteria(row, task.total_weight, cost);
-  if (!std::isfinite(row.icl))
+  fill_criteria(row, task.total_weight);
+  if (!std::isfinite(row.bic))
     return {{}, unfitted(row, CandidateStatus::failed, "its likelihood is not a finite number")};
   return {std::move(fit.mixture), row};
 }
@@ -136,52 +128,21 @@ void for_each_from_the_largest(Index count, Do action) {
   require_whole_loop();
 }
 
-bool wants_heldout(const Task& task) {
-  if (task.design.runs.empty()) return false;
-  return task.options.criterion == Criterion::heldout || task.points.count() <= affordable_heldout;
-}
-
-void score_heldout(const Task& task, FittedCandidate& candidate) {
-  Candidate& row = candidate.row;
-  try {
-    candidate.heldout =
-        heldout_score(task.points, task.design.runs, row.components, task.options.em, task.seed_of(row.components));
-    row.heldout = candidate.heldout.mean();
-  } catch (const NotPositiveDefinite& error) {
-    row.failed = std::string("on left-out runs: ") + error.what();
-  }
-}
-
 std::vector<FittedCandidate> fit_all(const Task& task, const std::vector<Index>& components) {
   const EmSweep sweep(task.points, task.options.em);
   std::vector<FittedCandidate> fitted(components.size());
   for_each_from_the_largest(std::ssize(components), [&](Index i) {
     fitted[static_cast<std::size_t>(i)] = fit_candidate(task, sweep, components[static_cast<std::size_t>(i)]);
   });
-  if (wants_heldout(task))
-    for_each_from_the_largest(std::ssize(components), [&](Index i) {
-      if (fitted[static_cast<std::size_t>(i)].row.status == CandidateStatus::fitted)
-        score_heldout(task, fitted[static_cast<std::size_t>(i)]);
-    });
   return fitted;
 }
 
 /// A sample of a large cloud for comparing candidates. The cloud is divided into equal shares, and each share gives one
 /// point, in order.
-std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t seed, std::vector<Index>& positions) {
+std::optional<PointPart> part_to_compare(const PointSet& points, std::uint64_t seed) {
   if (points.count() <= most_compared) return {};
   std::mt19937_64 generator = make_generator(seed, "compared points");
-  positions = one_of_each_share(points.count(), compared_part, generator);
-  return PointPart(points, positions);
-}
-
-/// The sample design of a part of the points. Neighbouring points share samples, so the part counts as the same number
-/// of independent samples as all points.
-SampleDesign design_of(const SampleDesign& all, const std::vector<Index>& positions) {
-  SampleDesign part{std::min(all.effective_samples, static_cast<double>(positions.size())), {}};
-  for (const Index i : positions)
-    if (!all.runs.empty()) part.runs.push_back(all.runs[static_cast<std::size_t>(i)]);
-  return part;
+  return PointPart(points, one_of_each_share(points.count(), compared_part, generator));
 }
 
 /// Fits to all points. The fit starts from the mixture that was chosen on a part of the points.
@@ -198,13 +159,7 @@ GaussianMixture fitted_to_all(const PointSet& points, const GaussianMixture& cho
         fmt::format("mixture.components begins at {}, but {} of {} points are distinct: choose at "
                     "most {}",
                     fewest, task.distinct_points, task.points.count(), task.distinct_points));
-  if (task.options.criterion == Criterion::heldout)
-    throw DataError(fmt::format(
-        "the held-out criterion needs points of at least two runs. Without any one group of runs, more points than "
-        "components must remain. There are {} points in {} groups; use another criterion or more runs",
-        task.points.count(), heldout_groups(task.design.runs)));
-  throw DataError(fmt::format("no candidate mixture has a finite {} on {} points", name_of(task.options.criterion),
-                              task.points.count()));
+  throw DataError(fmt::format("no candidate mixture has a finite BIC on {} points", task.points.count()));
 }
 
 void check_enough(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options) {
@@ -235,34 +190,29 @@ MixtureResult with_memberships(const FeatureCloud& cloud, const FeatureCloud& as
 
 }  // namespace
 
-Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
-                 std::uint64_t seed, const GaussianMixture* start) {
+Selection select(const PointSet& points, double effective_samples, const SelectionOptions& options, std::uint64_t seed,
+                 const GaussianMixture* start) {
   const std::vector<Index> components = sorted_components(options);
   if (points.count() == 0) throw DataError("there are no points to cluster");
   check_points(points);
-  if (!design.runs.empty() && std::ssize(design.runs) != points.count())
-    throw std::invalid_argument(fmt::format("{} points have runs for {}; expected one run per point, or none",
-                                            points.count(), design.runs.size()));
-  if (!(design.effective_samples >= 0.0) || !std::isfinite(design.effective_samples))
+  if (!(effective_samples >= 0.0) || !std::isfinite(effective_samples))
     throw std::invalid_argument(fmt::format(
         "effective_samples = {} is out of range: a finite number above 0, or 0 if all points are independent",
-        design.effective_samples));
-  std::vector<Index> positions;
-  const std::optional<PointPart> part = part_to_compare(points, seed, positions);
+        effective_samples));
+  const std::optional<PointPart> part = part_to_compare(points, seed);
   const PointSet compared = part ? part->set() : points;
-  const SampleDesign compared_design = part ? design_of(design, positions) : design;
+  // Neighbouring points share samples, so the part counts as the same number of independent samples as all points.
+  if (part) effective_samples = std::min(effective_samples, static_cast<double>(compared.count()));
   const double weight = compared.weights.size() > 0 ? compared.weights.sum() : static_cast<double>(compared.count());
-  const Task task{compared, compared_design, options, seed, start, weight, count_distinct(compared, components.back())};
+  const Task task{
+      compared, effective_samples, options, seed, start, weight, count_distinct(compared, components.back())};
   std::vector<FittedCandidate> fitted = fit_all(task, components);
   Selection result;
   result.compared = part ? compared.count() : 0;
   for (const FittedCandidate& candidate : fitted) result.candidates.push_back(candidate.row);
-  const Index best = best_candidate(result.candidates, options.criterion);
+  const Index best = best_candidate(result.candidates);
   if (best < 0) report_no_choice(task, result.candidates);
   result.candidates[static_cast<std::size_t>(best)].selected = true;
-  for (std::size_t i = 0; i < fitted.size(); ++i)
-    result.candidates[i].heldout_error =
-        difference_error(fitted[i].heldout, fitted[static_cast<std::size_t>(best)].heldout);
   result.mixture = std::move(fitted[static_cast<std::size_t>(best)].mixture);
   if (part) result.mixture = fitted_to_all(points, result.mixture, options.em);
   return result;
@@ -271,8 +221,8 @@ Selection select(const PointSet& points, const SampleDesign& design, const Selec
 MixtureResult select_mixture(const WindowFits& fits, const FeatureCloud& cloud, const SelectionOptions& options,
                              std::uint64_t seed, const GaussianMixture* start, const FeatureCloud& assigned) {
   check_enough(fits, cloud, options);
-  const SampleDesign design{effective_samples(cloud, fits.length, fits.step), cloud.runs};
-  return with_memberships(cloud, assigned, fits.count(), select(cloud.point_set(), design, options, seed, start));
+  const double samples = effective_samples(cloud, fits.length, fits.step);
+  return with_memberships(cloud, assigned, fits.count(), select(cloud.point_set(), samples, options, seed, start));
 }
 
 MixtureResult merge_components(MixtureResult result, Index most) {

@@ -17,15 +17,6 @@ namespace modebank {
 /// one.
 inline constexpr Eigen::Index most_compared = 100'000;
 
-/// Sample design of the points: number of independent samples, and runs.
-struct SampleDesign {
-  double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent
-
-  /// N, run of each point; held-out scores leave out whole runs. If empty, the runs are unknown, and no held-out scores
-  /// are computed.
-  std::vector<Eigen::Index> runs;
-};
-
 /// The chosen mixture and the table of candidates.
 struct Selection {
   GaussianMixture mixture;  ///< physical units
@@ -37,15 +28,15 @@ struct Selection {
 /// The largest candidate number of components.
 std::ptrdiff_t most_components(const SelectionOptions& options);
 
-/// Fits every candidate and keeps the one with the best criterion, on a tie the smaller one. Runs in parallel over
+/// Fits every candidate and keeps the one with the lowest BIC, on a tie the smaller one. Runs in parallel over
 /// candidates and restarts, each with its own seed. The table is sorted by number of components, without duplicates.
 /// `start` (physical units, may be null) starts the first restart of the candidate of its size. Above 100,000 points,
 /// candidates are fitted to about 50,000 points drawn by the seed. The chosen candidate is then fitted to all points,
-/// from that result. Throws DataError if every candidate has more components than there are distinct points. Also
-/// throws it if no candidate can be scored (held-out score with fewer than two runs). Throws std::invalid_argument
-/// without candidates or for a candidate below 1.
-Selection select(const PointSet& points, const SampleDesign& design, const SelectionOptions& options,
-                 std::uint64_t seed, const GaussianMixture* start = nullptr);
+/// from that result. `effective_samples`: effective number of independent samples of the points; 0 if all are
+/// independent. Throws DataError if every candidate has more components than there are distinct points. Throws
+/// std::invalid_argument without candidates or for a candidate below 1.
+Selection select(const PointSet& points, double effective_samples, const SelectionOptions& options, std::uint64_t seed,
+                 const GaussianMixture* start = nullptr);
 
 /// A selection, and the windows' memberships.
 struct MixtureResult {
@@ -56,7 +47,7 @@ struct MixtureResult {
   Eigen::MatrixXd features;
   Eigen::VectorXi labels;  ///< M, component of each window; -1 for noise, and for windows that are neither clustered
                            ///< nor assigned
-  Eigen::Index clustered = 0;  ///< number of windows to which the mixture is fitted; 0 if unknown (older archives)
+  Eigen::Index clustered = 0;  ///< number of windows to which the mixture is fitted
   WindowResponsibilities responsibilities;
   std::vector<Candidate> candidates;
   Eigen::Index compared = 0;  ///< number of windows on which candidates were compared; 0 means all clustered windows

@@ -4,9 +4,4 @@ execute_process(COMMAND git -C ${SOURCE} describe --always --dirty --abbrev=12 O
 if(failed)
   set(GIT_REVISION unknown)
 endif()
-execute_process(COMMAND git -C ${SOURCE} log -1 --format=%cs OUTPUT_VARIABLE DATE OUTPUT_STRIP_TRAILING_WHITESPACE
-                ERROR_QUIET RESULT_VARIABLE failed)
-if(failed)
-  string(TIMESTAMP DATE "%Y-%m-%d" UTC)
-endif()
 configure_file(${SOURCE}/app/chain/build_info.cpp.in ${OUTPUT} @ONLY)

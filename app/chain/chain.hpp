@@ -31,19 +31,6 @@ class StageSource {
   virtual void provide(Stage, const std::string& /*key*/, const StagePart& part) { part.compute(); }
 };
 
-/// Takes the data and the stages up to `until` from an archive. Stages that the archive lacks are computed.
-class StoredStages : public StageSource {
- public:
-  /// Throws DataError if the archive contains no data.
-  StoredStages(const std::filesystem::path& file, Stage until);
-  const Archive& stored() const { return stored_; }
-  void provide(Stage stage, const std::string& key, const StagePart& part) override;
-
- private:
-  Archive stored_;
-  Stage until_;
-};
-
 /// Facts about the execution that the archive stores. The chain adds the data's hash.
 struct Execution {
   std::string config;  ///< the resolved configuration

@@ -15,27 +15,17 @@ namespace modebank::app {
 
 namespace {
 
-void check_usage(const std::string& command, const Config& config) {
-  if (command == "run" && !config.archive.input.empty())
-    throw ConfigurationError(
-        "archive.input does not work with run, which starts from the data; use identify, cluster or evaluate");
-  if (command != "evaluate" && !config.archive.bank.empty())
-    throw ConfigurationError("archive.bank works with evaluate only: modebank evaluate CONFIG --archive.bank FILE");
-  if (!config.archive.bank.empty() && !config.archive.input.empty())
-    throw ConfigurationError("archive.bank and archive.input are both set; give one of them");
-  for (const std::string& file : {config.archive.input, config.archive.bank})
-    if (!file.empty() && !std::filesystem::exists(file))
-      throw ConfigurationError(fmt::format("{}: no such file", file));
+void check_bank(const std::string& file) {
+  if (!file.empty() && !std::filesystem::exists(file)) throw ConfigurationError(fmt::format("{}: no such file", file));
 }
 
-/// Input files of a command.
+/// Input files of a run.
 std::vector<std::filesystem::path> sources_of(const Config& config, const std::filesystem::path& configuration,
                                               const MemoryTables* memory) {
   std::vector<std::filesystem::path> sources;
-  for (const std::filesystem::path& file :
-       {configuration, std::filesystem::path(config.archive.input), std::filesystem::path(config.archive.bank)})
+  for (const std::filesystem::path& file : {configuration, std::filesystem::path(config.archive.bank)})
     if (!file.empty()) sources.push_back(file);
-  if (config.archive.input.empty() && memory == nullptr)
+  if (memory == nullptr)
     for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
   return sources;
 }
@@ -58,12 +48,11 @@ void Adviser::done(Stage stage, const Archive& archive) const {
 }
 
 void Adviser::warn_of_windows(const WindowCounts& counts) const {
-  for (const Warning& found : window_warnings(counts)) warning("windows: " + found.text);
+  if (const std::string found = window_warning(counts); !found.empty()) warning("windows: " + found);
 }
 
-void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
-                   const MemoryTables* memory) {
-  check_usage(command, config);
+void check_request(const Config& config, const std::filesystem::path& file, const MemoryTables* memory) {
+  check_bank(config.archive.bank);
   validate(config);
   const bool replaces = std::filesystem::exists(config.archive.output);
   check_output({"archive.output", config.archive.output, archive_form()},
@@ -94,7 +83,7 @@ void run_all(const Config& config, const std::string& typed, const Listener& lis
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   StageSource computed;
   Chain chain(computed, listener, memory);
-  run_and_write(chain, chain_options(config), Stage::bank_scores, "",
+  run_and_write(chain, chain_options(config), Stage::bank_scores, config.archive.bank,
                 {resolved_text(config), make_provenance(config_hash(config), typed)}, config.archive.output);
 }
 

@@ -19,11 +19,10 @@ class Adviser : public Listener {
 
 /// Checks a configuration before any file is read. `file` is the path of the configuration, or empty without one.
 /// Throws ConfigurationError for:
-/// - keys that the command does not read, and values that do not fit each other,
+/// - values that do not fit each other,
 /// - files that do not exist,
 /// - an archive that cannot be written or that would replace one of its sources.
-void check_request(const std::string& command, const Config& config, const std::filesystem::path& file,
-                   const MemoryTables* memory = nullptr);
+void check_request(const Config& config, const std::filesystem::path& file, const MemoryTables* memory = nullptr);
 
 /// Runs the chain's stages up to `last`, writes the result to `output` and returns the archive. If `banks` is not
 /// empty, scores the banks of that archive instead. Evaluations that do not fit into memory are written at once, and

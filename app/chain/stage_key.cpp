@@ -61,13 +61,13 @@ class KeyText {
 MODEBANK_KEY_FIELDS(FormatOptions, separator, decimal, header, na, skip_rows, skip_automatic, definitions)
 MODEBANK_KEY_FIELDS(SplitOptions, kind, blocks, last_percent, gap_samples)
 MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, derive, where, state_unit, input_unit,
-                    weight, label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, lag_range_s,
-                    quantum, quantum_auto, format, missing, disorder, split, train, test)
+                    label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, lag_range_s, quantum,
+                    quantum_auto, format, missing, disorder, split, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, length, step, loss,
-                    loss_scale, sigma, prior, prior_sd, intercept, covariance, max_iterations, solver, seed)
+                    loss_scale, sigma, prior, prior_sd, intercept, centre, covariance, max_iterations, solver, seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,
                     noise_component)
-MODEBANK_KEY_FIELDS(SelectionOptions, components, criterion, em)
+MODEBANK_KEY_FIELDS(SelectionOptions, components, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
                     measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, drift,

@@ -17,11 +17,9 @@ struct CommandLine {
 
   // Values of the options. The table of commands explains each of them.
   bool help = false, version = false, quiet = false, verbose = false;
-  bool json = false, dry_run = false, force = false;
-  bool schema = false, markdown = false, repair = false, yes = false;
-  std::string output, run, table, to;
+  bool json = false, csv = false, dry_run = false, force = false;
+  std::string output, run, to, until;
   std::string form = "increment";
-  double wheel_separation_m = 0.0, wheel_radius_m = 0.0;  ///< 0 if the option is not given
 };
 
 /// Returns the word, quoted for a shell.

@@ -7,7 +7,6 @@
 
 #include "app/cli/commands.hpp"
 #include "app/config/option_table.hpp"
-#include "app/report/page/compare_page.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -18,16 +17,14 @@ const std::vector<std::string> chain_keys{"data", "window", "mixture", "bank", "
 constexpr std::size_t any_number = std::numeric_limits<std::size_t>::max();
 const Arguments one_config{"CONFIG", "needs one configuration file", 1, 1};
 const Arguments no_name{"", "takes no name", 0, 0};
-const Arguments one_command{"[COMMAND]", "takes one command", 0, 1};
 const Arguments one_archive{"ARCHIVE", "needs one archive", 1, 1};
 
 CommandOption output(const std::string& what, const std::string& help) {
   return {"output,o", what, help, &CommandLine::output};
 }
 CommandOption force(const std::string& help) { return {"force", "", help, &CommandLine::force}; }
-CommandOption of_run(const std::string& help) { return {"run", "NAME", help, &CommandLine::run}; }
-CommandOption dry_run() {
-  return {"dry-run", "", "list the files to read and write, then stop", &CommandLine::dry_run};
+CommandOption dry_run(const std::string& help = "list the files to read and write, then stop") {
+  return {"dry-run", "", help, &CommandLine::dry_run};
 }
 CommandOption as_json(const std::string& help = "print the result as one JSON object") {
   return {"json", "", help, &CommandLine::json};
@@ -44,7 +41,8 @@ std::vector<Command> commands_to_start() {
        {"data", "window", "mixture", "bank", "filter", "archive", "job", "simulate"},
        {as_json(), output("FOLDER", "folder of its files (modebank_demo)"),
         force("also if that folder contains other files")},
-       run_demo},
+       run_demo,
+       {"archive.bank"}},
       {"Start",
        "init",
        {"LOG...", "needs one or more logs", 1, any_number},
@@ -53,11 +51,8 @@ std::vector<Command> commands_to_start() {
        "states and inputs are guessed, each guess with its reason beside it.",
        "modebank init robot.bag",
        {},
-       {as_json(),
-        output("FILE", "path of the configuration (named after the log)"),
-        force("overwrite a configuration of that name"),
-        {"yes", "", "ask no questions; without it `init` asks on a terminal whether state and inputs are right",
-         &CommandLine::yes}},
+       {as_json(), output("FILE", "path of the configuration (named after the log)"),
+        force("overwrite a configuration of that name")},
        run_init},
       {"Start",
        "check",
@@ -68,16 +63,6 @@ std::vector<Command> commands_to_start() {
        chain_keys,
        {as_json()},
        run_check},
-      {"Start",
-       "config",
-       {"CONFIG", "needs one configuration file", 0, 1},
-       "the resolved configuration, with the origin of each value",
-       "Prints every key with its value and origin (line of the file, command line or default). The output is itself a "
-       "configuration.",
-       "modebank config robot.ini",
-       {"data", "window", "mixture", "bank", "filter", "archive", "job", "study", "track", "report", "simulate"},
-       {as_json(), {"schema", "", "a JSON schema of all keys, for editors; takes no CONFIG", &CommandLine::schema}},
-       run_config},
   };
 }
 
@@ -94,29 +79,11 @@ std::vector<Command> commands_to_identify() {
        "logs it writes NAME.ini, NAME.h5 and NAME.html into the current folder: `init` proposes the configuration.",
        "modebank run robot.bag",
        chain_keys,
-       {as_json(), dry_run(), force("replace an archive of other data; with logs, all files")},
+       {as_json(),
+        {"until", "windows | mixture | bank", "stop after this stage and archive what there is", &CommandLine::until},
+        dry_run("list the files to read and write and, of a CONFIG, every key with its origin, then stop"),
+        force("replace an archive of other data; with logs, all files")},
        run_pipeline},
-      {"Identify",
-       "identify",
-       one_config,
-       "fit the windows alone and archive them",
-       "",
-       "modebank identify robot.ini",
-       {"data", "window", "archive", "job"},
-       archived,
-       run_pipeline},
-      {"Identify",
-       "cluster",
-       one_config,
-       "cluster the windows (of --archive.input, if given)",
-       "",
-       "modebank cluster robot.ini --archive.input windows.h5",
-       {"data", "window", "mixture", "archive", "job"},
-       archived,
-       run_pipeline},
-      {"Identify", "evaluate", one_config,
-       "learn a bank and judge it (from --archive.input), or judge that of --archive.bank", "",
-       "modebank evaluate other.ini --archive.bank robot.h5", chain_keys, archived, run_pipeline},
       {"Identify",
        "study",
        one_config,
@@ -148,17 +115,17 @@ std::vector<Command> commands_to_use() {
        "modebank show robot.h5 /bank/A",
        {},
        {as_json(),
-        of_run("print only the rows of this run, in arrays over samples and in tables"),
+        {"csv", "", "print the table or array at PATH as CSV; with --run a group, one row per sample",
+         &CommandLine::csv},
+        {"run", "NAME", "print only the rows of this run, in arrays over samples and in tables", &CommandLine::run},
         {"form", "increment | full", "of A: x[k+1] - x[k] = A x[k], or x[k+1] = A x[k]", &CommandLine::form}},
        run_show},
       {"Use",
        "report",
-       {"ARCHIVE|STUDY|FOLDER [ARCHIVE...]",
-        fmt::format("needs an archive, a study, a folder of archives, or two to {} archives to compare",
-                    report::most_compared),
-        1, report::most_compared},
-       "a page that opens offline in a browser: of a run, a study, runs side by side, or a folder",
-       "For a folder of archives it makes SITE/index.html, a table to sort, filter and compare, and a page for each "
+       {"ARCHIVE|STUDY|FOLDER [ARCHIVE]", "needs an archive, a study, a folder of archives, or two archives to compare",
+        1, 2},
+       "a page that opens offline in a browser: of a run, a study, two runs side by side, or a folder",
+       "For a folder of archives it makes SITE/index.html, a table with links, and a page for each "
        "archive and study. Later calls make only pages whose archive changed.",
        "modebank report robot.h5",
        {"report"},
@@ -176,7 +143,7 @@ std::vector<Command> commands_to_use() {
        {"data", "filter.variant", "filter.noise", "track"},
        {as_json("print JSON objects; this is the default for JSON input")},
        run_track,
-       {"data.truth", "data.weight", "data.label"}},
+       {"data.truth", "data.label"}},
       {"Use",
        "predict",
        one_archive,
@@ -192,40 +159,28 @@ std::vector<Command> commands_to_use() {
         {"filter", "NAME", "filter of the archive; short for --track.filter", "track.filter"},
         output("FILE", "CSV file (standard output)")},
        run_predict,
-       {"data.truth", "data.weight", "data.label", "filter.horizon", "filter.smooth"}},
+       {"data.truth", "data.label", "filter.horizon", "filter.smooth"}},
       {"Use",
        "export",
        {"ARCHIVE --to FORM", "needs one archive", 1, 1},
-       "the bank for other programs: json, regimes, mat, c, casadi, ros2, or a table as csv",
-       "Every form is x[k+1] = A x[k] + B u[k] + c: json one page; regimes its Q, R, transitions and gates for a "
-       "filter "
-       "with a motion model of its own; mat for MATLAB and Octave; c a C99 filter without "
-       "heap; casadi Python text for MPC; ros2 parameter files, one per family of modes. Refused where the verdict on "
-       "its "
-       "uncertainty is overconfident or underconfident.",
+       "the bank for other programs: json, or a filter in c",
+       "Both forms are x[k+1] = A x[k] + B u[k] + c: json one page with errors and units; c a C99 filter without heap. "
+       "Refused where the verdict on its uncertainty is overconfident or underconfident.",
        "modebank export robot.h5 --to c -o tracker.c",
        {"track.filter"},
        {as_json(),
-        {"to",
-         "FORM",
-         "json, regimes, mat, c, casadi, ros2 or csv",
-         &CommandLine::to,
-         {"json", "regimes", "mat", "c", "casadi", "ros2", "csv"}},
-        output("FILE", "file, or folder of ros2"),
-        force("export the bank in spite of this verdict"),
-        {"table", "PATH", "csv: path of the table in the archive", &CommandLine::table},
-        of_run("csv: only the rows of this run; /data or /evaluation/FILTER as one table with a column per signal"),
-        {"wheel_separation_m", "W", "ros2: as the controller has it", &CommandLine::wheel_separation_m},
-        {"wheel_radius_m", "R", "ros2: as the controller has it", &CommandLine::wheel_radius_m}},
+        {"to", "json | c", "form", &CommandLine::to},
+        output("FILE", "file (c: its header is written beside it)"),
+        force("export the bank in spite of this verdict")},
        run_export},
       {"Use",
        "verify",
-       {"ARCHIVE|STUDY...", "needs at least one archive or study", 1, any_number},
+       {"ARCHIVE...", "needs at least one archive", 1, any_number},
        "check hash, schema and completeness",
        "",
        "modebank verify robot.h5",
        {},
-       {as_json(), {"repair", "", "remove broken files of study folders", &CommandLine::repair}},
+       {as_json()},
        run_verify},
   };
 }
@@ -239,27 +194,8 @@ std::vector<Command> commands_about() {
        "",
        "modebank help window.length",
        {},
-       {as_json(), {"markdown", "", "print all keys as a table", &CommandLine::markdown}},
+       {as_json("print one JSON object; without a word, all commands, keys and terms")},
        nullptr},
-      {"About", "version", no_name, "version and revision", "", "modebank version", {}, {as_json()}, nullptr},
-      {"About",
-       "completion",
-       {"bash | zsh | fish", "needs one shell", 1, 1},
-       "print a completion script for a shell, to be sourced",
-       "",
-       "source <(modebank completion bash)",
-       {},
-       {},
-       run_completion},
-      {"About",
-       "manual",
-       one_command,
-       "print a manual page in roff",
-       "",
-       "modebank manual run | man -l -",
-       {},
-       {},
-       run_manual},
   };
 }
 
@@ -272,7 +208,7 @@ std::string CommandOption::typed() const {
          long_name() + value;
 }
 
-std::vector<std::string> CommandOption::choices() const { return words.empty() ? choices_in(argument) : words; }
+std::vector<std::string> CommandOption::choices() const { return choices_in(argument); }
 
 bool Command::reads(const std::string& key) const {
   if (std::find(not_keys.begin(), not_keys.end(), key) != not_keys.end()) return false;

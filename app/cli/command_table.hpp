@@ -10,7 +10,7 @@
 namespace modebank::app {
 
 /// Destination of an option's value: a member of CommandLine, or the configuration key that the option sets.
-using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::*, double CommandLine::*, std::string>;
+using OptionTarget = std::variant<bool CommandLine::*, std::string CommandLine::*, std::string>;
 
 /// An option of a command that is not a configuration key.
 struct CommandOption {
@@ -19,7 +19,6 @@ struct CommandOption {
                          ///< value
   std::string help;
   OptionTarget target;
-  std::vector<std::string> words = {};  ///< choices, if `argument` is a placeholder such as "FORM"
 
   std::string long_name() const { return name.substr(0, name.find(',')); }
   std::string typed() const;                 ///< the option as in `help`, such as "-o FILE, --output FILE"
@@ -33,7 +32,7 @@ struct Arguments {
   std::size_t fewest, most;
 };
 
-/// One command. The parser, help, manual, completion and the check of options all use this table.
+/// One command. The parser, help and the check of options all use this table.
 struct Command {
   std::string group;    ///< heading under which `help` lists it
   std::string name;     ///

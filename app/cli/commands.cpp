@@ -17,16 +17,14 @@ namespace modebank::app {
 namespace {
 
 void print_help(const CommandLine& line) {
-  if (line.markdown && !line.files.empty())
-    throw ConfigurationError("help --markdown prints a table of all keys, and takes no name: " + line.files.front());
   // `run --help` does the same as `help run`.
   std::vector<std::string> names = line.files;
   if (line.help) names.assign(!line.command.empty(), line.command);
+  if (const std::string phrase = fmt::format("{}", fmt::join(names, " ")); option_called(phrase)) names = {phrase};
   std::string text;
   for (const std::string& name : names) text += help_on(name);
-  if (names.empty()) text = line.markdown ? option_markdown() : help_overview();
-  print_text(line, text);
-  print_json(line, {{"text", text}});
+  print_text(line, names.empty() ? help_overview() : text);
+  print_json(line, names.empty() ? help_json() : nlohmann::json{{"text", text}});
 }
 
 void print_version(const CommandLine& line) {
@@ -51,7 +49,7 @@ int run_command(const CommandLine& line) {
   set_up_log(line.quiet ? Verbosity::quiet : line.verbose ? Verbosity::verbose : Verbosity::normal);
   if (line.help || line.command == "help")
     print_help(line);
-  else if (line.version || line.command == "version")
+  else if (line.version)
     print_version(line);
   else if (const Command* command = find_command(line.command))
     return command->run(line);

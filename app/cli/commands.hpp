@@ -12,7 +12,7 @@ namespace modebank::app {
 /// exceptions give status 1.
 int run_command(const CommandLine& line);
 
-int run_pipeline(const CommandLine& line);    ///< the commands run, identify, cluster and evaluate
+int run_pipeline(const CommandLine& line);    ///< the command run
 Result do_pipeline(const CommandLine& line);  ///< same as run_pipeline, without printing
 /// Same as do_pipeline, for a valid configuration. `file` is the configuration's path, which need not exist yet.
 Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file);
@@ -28,8 +28,5 @@ int run_track(const CommandLine& line);
 int run_predict(const CommandLine& line);
 int run_export(const CommandLine& line);
 int run_verify(const CommandLine& line);
-int run_config(const CommandLine& line);
-int run_completion(const CommandLine& line);
-int run_manual(const CommandLine& line);
 
 }  // namespace modebank::app

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "app/text/next_step.hpp"
+#include "app/text/screen_facts.hpp"
 #include "io/archive/archive.hpp"
 
 /// Compares the modes that `modebank demo` found with the true modes of the simulated system.

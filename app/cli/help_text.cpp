@@ -5,17 +5,14 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/predicate.hpp>
-#include <boost/algorithm/string/replace.hpp>
 #include <boost/algorithm/string/trim.hpp>
 #include <cctype>
-#include <nlohmann/json.hpp>
 #include <vector>
 
 #include "app/cli/command_table.hpp"
 #include "app/config/config.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
-#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
@@ -61,7 +58,7 @@ std::string row(const std::string& left, const std::string& right, std::size_t l
 }
 
 std::string heading_of(const Command& command) {
-  return fmt::format("usage: modebank {}{}{}{}{}\n\n", command.name, command.arguments.text.empty() ? "" : " ",
+  return fmt::format("Usage: modebank {}{}{}{}{}\n\n", command.name, command.arguments.text.empty() ? "" : " ",
                      command.arguments.text, command.options.empty() ? "" : " [options]",
                      command.keys.empty() ? "" : " [--section.key value ...]");
 }
@@ -77,7 +74,7 @@ std::string options_of(const Command& command) {
 /// The most common keys, and the sections that contain all other keys.
 std::string keys_paragraph(const Command& command) {
   if (command.keys.empty()) return "";
-  constexpr std::size_t key_width = 23;  // enough for names such as "--track.checkpoint"
+  constexpr std::size_t key_width = 23;
   std::string text;
   int count = 0;
   for (const Option& option : option_table())
@@ -102,13 +99,6 @@ std::string section_text(const std::string& section) {
   for (const Option& option : option_table())
     if (option.section() == section) text += option_text(option);
   return text.empty() ? "" : fmt::format("[{}]\n{}", section, text);
-}
-
-/// The definition of a label on the first screen, for example "read: what the data are ..."; empty for other words.
-std::string label_text(const std::string& name) {
-  for (const ScreenLabel& label : screen_labels())
-    if (label.name == name) return fmt::format("{} (a line of the screen): {}\n", label.name, label.means);
-  return "";
 }
 
 using Terms = std::vector<nlohmann::json>;
@@ -149,10 +139,35 @@ std::string term_text(const Terms& terms, const std::string& name) {
                : "";
 }
 
+nlohmann::json json_of(const Command& command) {
+  nlohmann::json options = nlohmann::json::array();
+  for (const CommandOption& option : command.options)
+    options.push_back({{"name", option.long_name()},
+                       {"argument", option.argument},
+                       {"choices", option.choices()},
+                       {"help", option.help}});
+  return {{"name", command.name},       {"group", command.group},     {"arguments", command.arguments.text},
+          {"summary", command.summary}, {"details", command.details}, {"example", command.example},
+          {"keys", command.keys},       {"options", options}};
+}
+
+nlohmann::json json_of(const Option& option) {
+  return {{"key", option.key},
+          {"allowed", option.range},
+          {"choices", option.choices()},
+          {"unit", option.unit},
+          {"default", option.get(Config{})},
+          {"help", option.help},
+          {"when", option.when},
+          {"stage", option.stage ? name_of(*option.stage) : ""},
+          {"basic", option.basic},
+          {"repeatable", option.repeatable}};
+}
+
 }  // namespace
 
 std::string help_overview() {
-  std::string text = "usage: modebank COMMAND [FILE...] [--section.key value ...]\n";
+  std::string text = "Usage: modebank COMMAND [FILE...] [--section.key value ...]\n";
   std::string group;
   for (const Command& command : command_table()) {
     if (command.group != group) text += fmt::format("\n{}\n", command.group);
@@ -162,46 +177,39 @@ std::string help_overview() {
   text += "\nEvery command has\n";
   for (const CommandOption& option : common_options()) text += row(option.typed(), option.help, 13);
   return text +
-         "\n`modebank help X` explains a command, a section of the configuration, a key, a label of the screen or a "
-         "term.\n"
+         "\n`modebank help X` explains a command, a section of the configuration, a key or a term.\n"
          "Exit status: 0 done; 1 a file's content is invalid, or the run failed; 2 usage, configuration or path.\n";
+}
+
+const Option* option_called(const std::string& words) {
+  const std::vector<Option>& all = option_table();
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Option& option) {
+    return option.key == words || std::count(option.also.begin(), option.also.end(), words) > 0;
+  });
+  return found == all.end() ? nullptr : &*found;
 }
 
 std::string help_on(const std::string& name) {
   const Terms terms = nlohmann::json::parse(assets::terms_json());
-  const std::string words = label_text(name) + term_text(terms, name);
+  const std::string words = term_text(terms, name);
   if (const Command* command = find_command(name)) return command_text(*command) + (words.empty() ? "" : "\n" + words);
   refuse_gone_command(name);
   if (const std::string text = words + section_text(name); !text.empty()) return text;
-  if (const Option* option = find_option(name)) return option_text(*option) + when_text(*option);
+  if (const Option* option = option_called(name)) return option_text(*option) + when_text(*option);
   std::vector<std::string> known;
   for (const nlohmann::json& entry : terms) known.push_back(entry.at("term"));
   const std::string first = fmt::format("{}", fmt::join(known.begin(), known.begin() + 8, ", "));
-  for (const ScreenLabel& label : screen_labels()) known.push_back(label.name);
   for (const Command& command : command_table()) known.push_back(command.name);
   for (const Option& option : option_table()) known.push_back(option.key);
   throw ConfigurationError(fmt::format("{} is no command, section, key or term{}; terms are {}, ...", name,
                                        did_you_mean(name, known), first));
 }
 
-std::vector<std::string> term_names() {
-  std::vector<std::string> names;
-  for (const nlohmann::json& entry : nlohmann::json::parse(assets::terms_json())) names.push_back(entry.at("term"));
-  return names;
-}
-
-std::string option_markdown() {
-  const Config defaults{};
-  std::string text = "| key | allowed | unit | default | meaning |\n|---|---|---|---|---|\n";
-  for (const Option& option : option_table()) {
-    const std::string value = option.get(defaults);
-    std::string range = option.range, help = option.help;
-    boost::replace_all(range, "|", "\\|");
-    boost::replace_all(help, "|", "\\|");
-    text += fmt::format("| `{}` | {} | {} | {} | {} |\n", option.key, range, option.unit,
-                        value.empty() ? "" : "`" + value + "`", help);
-  }
-  return text;
+nlohmann::json help_json() {
+  nlohmann::json commands = nlohmann::json::array(), keys = nlohmann::json::array();
+  for (const Command& command : command_table()) commands.push_back(json_of(command));
+  for (const Option& option : option_table()) keys.push_back(json_of(option));
+  return {{"commands", commands}, {"keys", keys}, {"terms", nlohmann::json::parse(assets::terms_json())}};
 }
 
 }  // namespace modebank::app

@@ -1,21 +1,23 @@
 #pragma once
 
+#include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 namespace modebank::app {
+
+struct Option;
 
 /// All commands, one line each.
 std::string help_overview();
 
-/// Explains a command, a section, a key, a label of the screen or a term. The pages of `report` show the same
+/// Explains a command, a section, a key or a term. The pages of `report` show the same
 /// definitions. Throws ConfigurationError with the nearest names for an unknown word.
 std::string help_on(const std::string& name);
 
-/// A table of all keys, for the documentation.
-std::string option_markdown();
+/// The option with this key, or with these words among its other ones; null if there is none.
+const Option* option_called(const std::string& words);
 
-/// The words of the glossary that `help_on` explains.
-std::vector<std::string> term_names();
+/// All commands, keys and terms, for scripts and for the documentation.
+nlohmann::json help_json();
 
 }  // namespace modebank::app

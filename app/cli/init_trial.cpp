@@ -10,7 +10,6 @@
 #include "app/config/config_file.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
-#include "app/config/path_text.hpp"
 #include "filter/learn/chain/training_check.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"

@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cerrno>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 
@@ -29,23 +28,13 @@ void handle(int signal, void (*handler)(int)) {
   sigaction(signal, &action, nullptr);
 }
 
-enum class Waited { input, quiet, stop };
-
-timespec duration(double seconds) {
-  const double whole = std::floor(seconds);
-  return {static_cast<time_t>(whole), static_cast<long>(1e9 * (seconds - whole))};
-}
-
-/// Waits for input. Signals can arrive during the wait.
-Waited wait_for_input(double wait_s) {
+/// Waits for input. Signals can arrive during the wait. Returns whether there is input; false if a signal asked to
+/// stop.
+bool wait_for_input() {
   pollfd input{STDIN_FILENO, POLLIN, 0};
-  const timespec most = std::isfinite(wait_s) ? duration(wait_s) : timespec{};
-  while (stop_asked == 0) {
-    const int ready = ppoll(&input, 1, std::isfinite(wait_s) ? &most : nullptr, &outside_mask);
-    if (ready == 0) return Waited::quiet;
-    if (ready > 0 || errno != EINTR) return Waited::input;  // the next `read` reports the error
-  }
-  return Waited::stop;
+  while (stop_asked == 0)
+    if (ppoll(&input, 1, nullptr, &outside_mask) > 0 || errno != EINTR) return true;  // the next `read` reports errors
+  return false;
 }
 
 }  // namespace
@@ -71,28 +60,26 @@ LineStream::~LineStream() {
   sigprocmask(SIG_SETMASK, &outside_mask, nullptr);
 }
 
-LineStream::Filled LineStream::fill(double wait_s) {
+bool LineStream::fill() {
   buffer_.erase(0, start_);
   start_ = 0;
   std::array<char, 65536> chunk;
-  for (Waited waited; (waited = wait_for_input(wait_s)) != Waited::stop;) {
-    if (waited == Waited::quiet) return Filled::quiet;
+  while (wait_for_input()) {
     const ssize_t count = read(STDIN_FILENO, chunk.data(), chunk.size());
     if (count > 0) {
       buffer_.append(chunk.data(), static_cast<std::size_t>(count));
-      arrival_ = Clock::now();
-      return Filled::some;
+      return true;
     }
-    if (count == 0) return Filled::end;
+    if (count == 0) return false;
     if (errno != EINTR && errno != EAGAIN)
       throw DataError(std::string("cannot read standard input: ") + std::strerror(errno));
   }
   cut_ = !buffer_.empty();
   buffer_.clear();
-  return Filled::end;
+  return false;
 }
 
-LineStream::Got LineStream::next(std::string_view& line, double wait_s) {
+LineStream::Got LineStream::next(std::string_view& line) {
   while (true) {
     const std::size_t end = buffer_.find('\n', start_);
     if (end != std::string::npos) {
@@ -113,9 +100,7 @@ LineStream::Got LineStream::next(std::string_view& line, double wait_s) {
       start_ = 0;
       discarding_ = true;
     }
-    const Filled filled = fill(wait_s);
-    if (filled == Filled::some) continue;
-    if (filled == Filled::quiet) return Got::quiet;
+    if (fill()) continue;
     ended_ = true;
     unended_ = start_ < buffer_.size() && !discarding_;
     if (unended_) buffer_ += '\n';

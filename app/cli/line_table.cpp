@@ -44,7 +44,7 @@ bool holds(const std::vector<std::string>& all, const std::string& one) {
 
 /// Options for a single stream with all columns. There are no files, runs or roles. Every value may be missing.
 DataOptions of_a_stream(DataOptions data) {
-  for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label, &data.weight}) text->clear();
+  for (std::string* text : {&data.inputs, &data.states, &data.run, &data.label}) text->clear();
   for (std::vector<std::string>* names : {&data.truth, &data.train, &data.test}) names->clear();
   data.split = {};
   data.join = Join::time;

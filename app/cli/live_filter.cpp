@@ -3,52 +3,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "app/chain/stage_inputs.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/step/combined_filter.hpp"
-#include "ident/base/not_a_number.hpp"
 #include "io/archive/bank/load_bank.hpp"
-#include "io/archive/filter_checkpoint.hpp"
 #include "io/archive/load_combination.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
-namespace {
-
-/// A filter without snapshots throws earlier, in open_filter, before the first sample is read.
-BankFilter& kept(AnyFilter& filter) {
-  if (BankFilter* const bank = filter.of_bank()) return *bank;
-  throw ConfigurationError(
-      "track.checkpoint and track.resume do not work with combined filters; leave them out, or set track.filter to one "
-      "filter");
-}
-
-}  // namespace
-
-void save(AnyFilter& filter, const std::string& file, const std::string& identity) {
-  save_checkpoint(file, identity, kept(filter).snapshot());
-}
-
-Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity) {
-  const FilterSnapshot snapshot = load_checkpoint(file, identity);
-  try {
-    kept(filter).restore(snapshot);
-  } catch (const std::invalid_argument& error) {
-    throw DataError(file + ": " + error.what());
-  }
-  if (snapshot.samples.samples == 0) return {not_a_number, 0, {}};
-  if (!std::isfinite(snapshot.samples.time_s)) throw DataError(file + ": the last sample has no time");
-  return {snapshot.samples.time_s, snapshot.samples.samples,
-          snapshot.samples.inputs.col(0)};  // time of the last sample, number of
-                                            // samples, last inputs
-}
-
 /// The filter kf always uses the global model.
 std::string tracked_bank(const Config& config) {
   TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
@@ -126,11 +92,8 @@ CombinedMembers combined_members(const OpenArchive& archive, Index horizon) {
 }
 
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config) {
-  OpenedFilter opened = config.track.filter == TrackedFilter::combined
-                            ? open_combined(archive, config)
-                            : open_bank(archive, tracked_bank(config), tracked_options(config));
-  if (!config.track.checkpoint.empty() || !config.track.resume.empty()) kept(*opened.filter);
-  return opened;
+  if (config.track.filter == TrackedFilter::combined) return open_combined(archive, config);
+  return open_bank(archive, tracked_bank(config), tracked_options(config));
 }
 
 }  // namespace modebank::app

@@ -10,19 +10,6 @@
 
 namespace modebank::app {
 
-/// Point from which a filter continues: time of the last sample (NaN without samples), number of samples since the
-/// start, and the last inputs.
-struct Resumed {
-  double time_s;
-  Eigen::Index samples;
-  Eigen::VectorXd input;
-};
-
-/// Save and restore the filter's state. They throw the exceptions of save_checkpoint and load_checkpoint, and
-/// ConfigurationError for a filter that is not a bank.
-void save(AnyFilter& filter, const std::string& file, const std::string& identity);
-Resumed resume(AnyFilter& filter, const std::string& file, const std::string& identity);
-
 /// The configured filter. `bank` determines its sizes and period. `lags` is the number of samples that it needs before
 /// it starts.
 struct OpenedFilter {
@@ -35,7 +22,7 @@ struct OpenedFilter {
 void require_bank(const Config& config, const std::string& what);
 /// Name of the archive's bank that the configuration selects. For combined filters, the name of the first one.
 std::string tracked_bank(const Config& config);
-/// Options of the filter. Competitors use the options that `evaluate` uses.
+/// Options of the filter. Competitors use the options that `run` uses.
 FilterOptions tracked_options(const Config& config);
 /// Throws ConfigurationError unless the configured columns are as many as the bank's channels.
 void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive);

@@ -28,7 +28,6 @@ void turn_to_new_files(const CommandLine& line, DataOptions& data) {
   if (!given(line, "data.test")) data.test.clear();
   if (!given(line, "data.missing")) data.missing = Missing::predict;
   data.truth.clear();
-  data.weight.clear();
   data.label.clear();
   if (!given(line, "data.split")) data.split = {};
 }

@@ -6,12 +6,13 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/result.hpp"
-#include "app/config/valid_config.hpp"
+#include "app/config/config_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
 int run_check(const CommandLine& line) {
-  const Config config = load_valid_config(line.files.front(), line.overrides);
+  const Config config = load_config(line.files.front(), line.overrides);
+  validate(config);
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const ProgressMeter meter(!line.quiet);
   const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});

@@ -9,7 +9,6 @@
 #include "app/cli/log.hpp"
 #include "app/cli/simulated_system.hpp"
 #include "app/config/config_file.hpp"
-#include "app/config/configuration_output.hpp"
 #include "app/report/page/assets.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"

@@ -1,9 +1,6 @@
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <cstdio>
 #include <filesystem>
-#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
@@ -11,8 +8,6 @@
 #include "app/cli/log/log_sets.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
-#include "app/config/configuration_output.hpp"
-#include "app/init/confirm.hpp"
 #include "app/init/init_json.hpp"
 #include "app/init/proposal.hpp"
 #include "app/init/survey_set.hpp"
@@ -22,14 +17,6 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
-namespace {
-
-/// Whether standard input and output are both a terminal, so that a person can answer questions.
-bool is_asked(const CommandLine& line) {
-  return !line.yes && !line.json && isatty(STDIN_FILENO) == 1 && isatty(STDOUT_FILENO) == 1;
-}
-
-}  // namespace
 
 int run_init(const CommandLine& line) {
   const std::vector<FileSet> sets = nameable_sets(line.files);
@@ -39,9 +26,7 @@ int run_init(const CommandLine& line) {
   for (const FileSet& set : sets) surveyed.push_back(survey_set(set));
   print_text(line, survey_text(sets, surveyed));
   const std::filesystem::path folder = std::filesystem::absolute(target).lexically_normal().parent_path();
-  Guess guess = guess_roles(surveyed);
-  if (is_asked(line)) confirm_roles(surveyed, guess, std::cin, std::cout);
-  Proposal proposal = propose(sets, surveyed, guess, folder.string());
+  Proposal proposal = propose(sets, surveyed, guess_roles(surveyed), folder.string());
   state_values(proposal);
   make_it_run(proposal, target);
   const std::string text = configuration_text(proposal, line.typed);

@@ -2,26 +2,26 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
-#include <algorithm>
 #include <filesystem>
 #include <functional>
-#include <map>
 #include <nlohmann/json.hpp>
 
 #include "app/chain/chain.hpp"
 #include "app/chain/pipeline.hpp"
 #include "app/chain/provenance.hpp"
+#include "app/cli/acting_doubts.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
+#include "app/cli/log/log_text.hpp"
 #include "app/cli/log/run_log.hpp"
 #include "app/cli/progress_meter.hpp"
 #include "app/cli/summary_json.hpp"
-#include "app/config/option_table.hpp"
+#include "app/config/config_file.hpp"
 #include "app/config/section.hpp"
-#include "app/config/valid_config.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
+#include "app/text/operating_point.hpp"
 #include "app/text/summary_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/window_text.hpp"
@@ -36,49 +36,21 @@
 namespace modebank::app {
 namespace {
 
-/// The new archive will state the configuration's settings. Throws if the reused stages were computed with other
-/// settings.
-void check_same_settings(const Config& config, const std::string& stored, Stage taken) {
-  const std::map<std::string, std::string> before = resolved_values(stored),
-                                           now = resolved_values(resolved_text(config));
-  for (const Option& option : option_table()) {
-    const auto stage = before.find(option.key);
-    if (!option.stage || *option.stage > taken || stage == before.end()) continue;
-    if (const std::string& value = now.at(option.key); stage->second != value)
-      throw ConfigurationError(
-          fmt::format("archive.input: {} was made with {} = {}, but the configuration has '{}'; set the stored value, "
-                      "or start from the data",
-                      config.archive.input, option.key, stage->second.empty() ? "''" : stage->second, value));
-  }
-}
-
-/// The last stage that a command reads from --archive.input.
-Stage last_taken(const std::string& command) {
-  return command == "identify" ? Stage::data : command == "cluster" ? Stage::windows : Stage::mixture;
-}
-
-/// Earlier stages from --archive.input. Stages that this file lacks are computed.
-StoredStages earlier_stages(const Config& config, const std::string& command) {
-  StoredStages source(config.archive.input, last_taken(command));
-  const Archive& stored = source.stored();
-  const Stage there = stored.mixture ? Stage::mixture : stored.windows ? Stage::windows : Stage::data;
-  check_same_settings(config, stored.config, std::min(there, last_taken(command)));
-  return source;
-}
-
 /// Throws if the output would replace another result: that of other data, of a bank from another file, or of more
 /// stages. This is checked before any fit, as soon as the hash of the data is known.
 void check_replaces_same_result(const std::string& output, const std::string& data_hash, const std::string& bank,
-                                bool makes_bank) {
+                                Stage last) {
   std::error_code error;
   if (!std::filesystem::exists(output, error)) return;
   std::string other, other_bank;
-  bool has_bank = false;
+  bool has_more = false;
   try {
     const OpenArchive opened(output);
     other = load_data_hash(opened);
     other_bank = resolved_values(load_configuration(opened))["archive.bank"];
-    has_bank = inspect(opened, "/")["members"].contains("bank");
+    const nlohmann::json members = inspect(opened, "/")["members"];
+    has_more = (last < Stage::bank && members.contains("bank")) ||
+               (last < Stage::bank_scores && members.contains("evaluation"));
   } catch (const std::exception& reason) {
     throw DataError(
         fmt::format("archive.output: {} exists and is not replaced, because it cannot be read: {}; name another file, "
@@ -90,7 +62,7 @@ void check_replaces_same_result(const std::string& output, const std::string& da
         fmt::format("archive.output: {} was made from other data (data_hash {}, this run's is {}) and is not replaced; "
                     "name another file, or add --force",
                     output, other, data_hash));
-  if (other_bank != bank || (has_bank && !makes_bank))
+  if (other_bank != bank || has_more)
     throw DataError(
         fmt::format("archive.output: {} holds another result ({}) and is not replaced; name another file, or add "
                     "--force",
@@ -101,12 +73,12 @@ void check_replaces_same_result(const std::string& output, const std::string& da
 class Log : public Adviser {
  public:
   /// `output` is checked as soon as the data are read. If `output` is empty, any file may be replaced.
-  Log(std::string output, std::string bank, bool makes_bank)
-      : output_(std::move(output)), bank_(std::move(bank)), makes_bank_(makes_bank) {}
+  Log(std::string output, std::string bank, Stage last)
+      : output_(std::move(output)), bank_(std::move(bank)), last_(last) {}
 
   void done(Stage stage, const Archive& archive) const override {
     if (stage == Stage::data && !output_.empty())
-      check_replaces_same_result(output_, archive.provenance.data_hash, bank_, makes_bank_);
+      check_replaces_same_result(output_, archive.provenance.data_hash, bank_, last_);
     Adviser::done(stage, archive);
   }
   void progress(const std::string& line) const override { spdlog::info("{}", line); }
@@ -115,7 +87,7 @@ class Log : public Adviser {
 
  private:
   std::string output_, bank_;
-  bool makes_bank_;
+  Stage last_;
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -161,34 +133,51 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
 /// Throws for options of learning, because they have no effect on a stored bank.
 void refuse_learning_options(const CommandLine& line, const Config& config) {
   if (config.archive.bank.empty()) return;
+  if (!line.until.empty()) throw ConfigurationError("--until does not work with archive.bank, which is only judged");
   for (const auto& [key, value] : line.overrides)
     if (key.starts_with("mixture.") || (key.starts_with("bank.") && key != "bank.mode_names"))
       throw ConfigurationError(
           fmt::format("--{}: with archive.bank nothing is learned; the bank is that of {}", key, config.archive.bank));
 }
 
-Stage last_stage(const std::string& command) {
-  return command == "identify" ? Stage::windows : command == "cluster" ? Stage::mixture : Stage::bank_scores;
+Stage last_stage(const std::string& until) {
+  if (until == "windows") return Stage::windows;
+  return until == "mixture" ? Stage::mixture : until == "bank" ? Stage::bank : Stage::bank_scores;
 }
 
-/// Runs the command's stages and writes the archive.
+/// Adds what the single linear model leaves in doubt. The screen already has the doubt about the level.
+void add_doubts(const Archive& archive, Result& result) {
+  std::vector<std::string> doubts = delay_doubts(archive);
+  for (const std::string& doubt : doubts) result.text += paragraph("doubt", doubt);
+  if (const std::string level = level_doubt(archive); !level.empty()) {
+    if (!has_first_screen(archive)) result.text += paragraph("doubt", level);
+    doubts.push_back(level);
+  }
+  result.members["doubts"] = doubts;
+}
+
+/// Runs the stages and writes the archive.
 Result execute(const CommandLine& line, const Config& config, StageSource& source) {
-  const Log log(line.force ? "" : config.archive.output, config.archive.bank,
-                last_stage(line.command) == Stage::bank_scores);
+  const Stage last = last_stage(line.until);
+  const Log log(line.force ? "" : config.archive.output, config.archive.bank, last);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};
-  if (line.command == "identify") {
+  if (last == Stage::windows) {
     const Archive& data = chain.run(options, Stage::structure, execution);
     if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
-  const Archive& archive =
-      run_and_write(chain, options, last_stage(line.command), config.archive.bank, execution, config.archive.output);
-  if (!has_first_screen(archive))
-    return {summary_text(archive) + free_run_text(archive) + archive_line(config), written(config)};
+  const Archive& archive = run_and_write(chain, options, last, config.archive.bank, execution, config.archive.output);
+  if (!has_first_screen(archive)) {
+    Result result{summary_text(archive) + free_run_text(archive), written(config)};
+    add_doubts(archive, result);
+    result.text += archive_line(config);
+    return result;
+  }
   const Settings settings = resolved_values(archive.config);
   Result result{first_screen(archive, settings, config.archive.output, standard_output().width, line.program),
                 written(config)};
+  add_doubts(archive, result);
   if (line.json) result.members["summary"] = summary_json(archive, settings);
   return result;
 }
@@ -196,25 +185,25 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
 }  // namespace
 
 Result do_configured(const CommandLine& line, const Config& config, const std::filesystem::path& file) {
-  check_request(line.command, config, file);
+  check_request(config, file);
   refuse_learning_options(line, config);
   if (line.dry_run) return dry_run(config, {config.archive.output});
   const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
   const ProgressMeter meter(!line.quiet);
-  if (config.archive.input.empty()) {
-    KeptStages kept(config.archive.output);
-    return execute(line, config, kept);
-  }
-  StoredStages earlier = earlier_stages(config, line.command);
-  return execute(line, config, earlier);
+  KeptStages kept(config.archive.output);
+  return execute(line, config, kept);
 }
 
 Result do_pipeline(const CommandLine& line) {
-  if (line.command == "run" && names_logs(line.files)) return do_run_log(line);
+  if (names_logs(line.files)) return do_run_log(line);
   if (line.files.size() != 1)
-    throw ConfigurationError(
-        fmt::format("{} needs one configuration file, or logs: modebank {} CONFIG", line.command, line.command));
-  return do_configured(line, load_valid_config(line.files.front(), line.overrides), line.files.front());
+    throw ConfigurationError("run needs one configuration file, or logs: modebank run CONFIG");
+  Origins origins;
+  const Config config = load_config(line.files.front(), line.overrides, &origins);
+  validate(config);
+  Result result = do_configured(line, config, line.files.front());
+  if (line.dry_run) add_values(config, origins, result);
+  return result;
 }
 
 int run_pipeline(const CommandLine& line) { return print_result(line, do_pipeline(line)); }

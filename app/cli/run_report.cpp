@@ -5,11 +5,9 @@
 
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
-#include "app/report/page/compare_page.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
 #include "app/report/site/report_folder.hpp"
-#include "app/study/answers/verify_study.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/replace_file.hpp"
 
@@ -42,24 +40,20 @@ void report_run(const OpenArchive& opened, const std::filesystem::path& page, co
 void report_site(const CommandLine& line, const std::filesystem::path& site, const ReportConfig& options,
                  report::Written& written) {
   const report::SiteResult result = report::report_folder(line.files.front(), site, options, written);
-  std::string text = fmt::format("{} archives; pages: {} written, {} removed\n", result.archives,
-                                 written.files.size() - 1, result.removed.size());
+  std::string text = fmt::format("{} archives; {} pages written\n", result.archives, written.files.size() - 1);
   nlohmann::json problems = nlohmann::json::array();
   for (const auto& [file, what] : result.problems) {
     text += fmt::format("no page of {}: {}\n", file, what);
     problems.push_back({{"file", file}, {"what", what}});
   }
   print_text(line, text);
-  print_json(line, {{"written", written.files}, {"removed", result.removed}, {"problems", problems}});
+  print_json(line, {{"written", written.files}, {"problems", problems}});
 }
 
 /// Writes the page or pages of the files.
 void report_files(const CommandLine& line, const std::filesystem::path& page, const ReportConfig& options,
                   report::Written& written) {
-  if (line.files.size() > 1) {
-    report::report_comparison({line.files.begin(), line.files.end()}, page, options, written);
-    return;
-  }
+  if (line.files.size() > 1) return report::report_comparison(line.files[0], line.files[1], page, written);
   const std::string& name = line.files.front();
   if (std::filesystem::is_directory(name))
     return report::report_study(report::find_study(name, written), page, options, written);

@@ -5,6 +5,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
+#include "app/text/csv_text.hpp"
 #include "app/text/first_screen.hpp"
 #include "app/text/free_run_text.hpp"
 #include "app/text/mode_tables.hpp"
@@ -71,10 +72,24 @@ void convert_to_full_form(const OpenArchive& file, const std::string& path, json
   object["form"] = "full";
 }
 
+/// All arrays of a group as a table with one row per sample of a run.
+json samples_of(const OpenArchive& archive, const std::string& group, const std::string& run, const json& members) {
+  json table = {{"columns", json::array()}, {"value", json::array()}};
+  const auto add = [&](const std::string& name) {
+    const json values = inspect(archive, group + "/" + name, run).at("value");
+    table["columns"].push_back(name);
+    for (std::size_t k = 0; k < values.size(); ++k) table["value"][k][name] = values[k];
+  };
+  if (members.contains("time")) add("time");
+  for (const auto& [name, member] : members.items())
+    if (name != "time") add(name);
+  return table;
+}
+
 }  // namespace
 
 int run_show(const CommandLine& line) {
-  if (line.files.size() == 1 && !line.json && line.run.empty()) {
+  if (line.files.size() == 1 && !line.json && !line.csv && line.run.empty()) {
     print_overview(line);
     return 0;
   }
@@ -82,7 +97,11 @@ int run_show(const CommandLine& line) {
   const OpenArchive file(line.files[0]);
   json object = inspect(file, path, line.run);
   if (line.form == "full") convert_to_full_form(file, path, object);
-  if (line.json)
+  if (line.csv && !line.run.empty() && object.contains("members"))
+    object = samples_of(file, path, line.run, object.at("members"));
+  if (line.csv)
+    fmt::print("{}", csv_text(object, path));
+  else if (line.json)
     print_json(line, object);
   else
     fmt::print("{}\n", object.dump(2));

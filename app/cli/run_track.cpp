@@ -9,8 +9,6 @@
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
-#include "io/archive/filter_checkpoint.hpp"
-#include "io/files/output_file.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank::app {
@@ -26,15 +24,6 @@ std::vector<Trajectory> read_runs(const OpenArchive& archive, const Config& conf
   return data.recording.runs;
 }
 
-/// A new checkpoint may replace the checkpoint from which the filter continues.
-void check_checkpoint(const std::string& archive, const Config& config, bool reads_files) {
-  if (config.track.checkpoint.empty()) return;
-  std::vector<std::filesystem::path> sources{archive};
-  if (reads_files)
-    for (const DataFile& file : data_files(config.data)) sources.push_back(file.path);
-  check_output({"track.checkpoint", config.track.checkpoint, checkpoint_form()}, sources);
-}
-
 }  // namespace
 
 int run_track(const CommandLine& line) {
@@ -43,7 +32,6 @@ int run_track(const CommandLine& line) {
   config.track.json = line.json;
   const bool files = given(line, "data.inputs");
   if (files) turn_to_new_files(line, config.data);
-  check_checkpoint(line.files.front(), config, files);
   OpenedFilter opened = open_filter(archive, config);
   const AveragedColumns averaged = take_sampling(line, archive, opened.bank.dt_s, config.data);
   const Alignment alignment{config.data.rate_hz, config.data.lag_s, averaged};

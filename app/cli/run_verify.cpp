@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/result.hpp"
-#include "app/study/answers/verify_study.hpp"
 #include "io/archive/archive.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -19,7 +16,7 @@ std::string named_problem(const std::string& file, const std::string& what) {
   return what.rfind(file + ": ", 0) == 0 ? what : fmt::format("{}: {}", file, what);
 }
 
-/// Problems of one archive or study, and remarks on it.
+/// Problems of one archive.
 json report_archive(const CommandLine& line, const std::string& file) {
   const Verification result = verify_archive(file);
   if (result.ok()) print_text(line, fmt::format("{}: ok\n", file));
@@ -31,31 +28,13 @@ json report_archive(const CommandLine& line, const std::string& file) {
   return {{"file", file}, {"problems", problems}};
 }
 
-json report_study(const CommandLine& line, const std::string& folder) {
-  const StudyVerification result = verify_study(folder);
-  json problems = json::array();
-  for (const StudyProblem& problem : result.problems) {
-    const bool removed = line.repair && problem.removable;
-    print_text(line, fmt::format("{}{}{}\n", named_problem(problem.file.string(), problem.what),
-                                 problem.redo.empty() ? "" : "; to redo: " + problem.redo, removed ? "; removed" : ""));
-    problems.push_back(
-        {{"file", problem.file.string()}, {"what", problem.what}, {"redo", problem.redo}, {"removed", removed}});
-  }
-  if (line.repair) repair_study(folder, result);
-  print_text(line, fmt::format("{}: {} trials are complete{}\n", folder, result.whole,
-                               problems.empty() ? ": ok" : fmt::format(", {} problems", problems.size())));
-  return {{"file", folder}, {"problems", problems}, {"whole_trials", result.whole}};
-}
-
 }  // namespace
 
 int run_verify(const CommandLine& line) {
-  if (line.repair && std::none_of(line.files.begin(), line.files.end(), is_study_folder))
-    throw ConfigurationError("--repair works only with folders of studies; " + line.files.front() + " is none");
   json files = json::array();
   bool all_good = true;
   for (const std::string& file : line.files) {
-    files.push_back(is_study_folder(file) ? report_study(line, file) : report_archive(line, file));
+    files.push_back(report_archive(line, file));
     all_good = all_good && files.back()["problems"].empty();
   }
   print_json(line, {{"files", files}}, all_good ? 0 : 1);

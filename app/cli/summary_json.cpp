@@ -72,7 +72,6 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"band", screen.band},
           {"mean", screen.mean},
           {"warning", screen.warning},
-          {"next", screen.next},
           {"use", screen.use},
           {"forecasts", forecasts_json(screen.forecasts)},
           {"answer", answer},

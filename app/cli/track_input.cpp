@@ -34,11 +34,6 @@ SampleReader::SampleReader(const DataOptions& data) : data_(data), table_(data) 
   next_ = sample_;
 }
 
-void SampleReader::remember(const Eigen::VectorXd& input) {
-  sample_.input = input;
-  any_input_ = true;
-}
-
 SampleReader::Line SampleReader::malformed(std::string reason) {
   reason_ = without_place(std::move(reason));
   return Line::malformed;

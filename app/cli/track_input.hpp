@@ -30,8 +30,6 @@ class SampleReader {
   const std::string& reason() const { return reason_; }
   /// Remarks on values of the last sample that are too large for a filter.
   const std::vector<std::string>& remarks() const { return remarks_; }
-  /// Sets the inputs before the first line. They are used if the first samples lack inputs.
-  void remember(const Eigen::VectorXd& input);
   LineTable& table() { return table_; }
 
  private:

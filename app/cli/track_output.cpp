@@ -56,10 +56,6 @@ void EstimateWriter::header(fmt::memory_buffer& out) const {
   for (const auto& [name, flag] : flag_names) fmt::format_to(to, ",{}", name);
   fmt::format_to(to, ",mode");
   for (Index j = 0; j < modes_; ++j) fmt::format_to(to, ",p{}", j);
-  if (lines_.forecast) fmt::format_to(to, ",now");
-  for (const std::string& s : states_)
-    for (const char* what : {"_now", "_now_lower", "_now_upper"})
-      if (lines_.forecast) fmt::format_to(to, ",{}", csv_field(s + what));
   fmt::format_to(to, "\n");
 }
 
@@ -81,7 +77,7 @@ void EstimateWriter::signal(std::size_t state, std::initializer_list<double> val
 }
 
 void EstimateWriter::line(const std::string& run, double time_s, const FilterEstimate& e, const LiveVerdict& verdict,
-                          const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const {
+                          const ValidityFlags& flags, fmt::memory_buffer& out) const {
   auto to = std::back_inserter(out);
   const bool as_json = lines_.json;
   const auto named = [&](const char* name, double value) {
@@ -109,15 +105,6 @@ void EstimateWriter::line(const std::string& run, double time_s, const FilterEst
     number(out, e.mode_probability(j), as_json ? "null" : "");
   }
   if (as_json) fmt::format_to(to, "]");
-  if (forecast != nullptr) {
-    fmt::format_to(to, fmt::runtime(as_json ? ",\"now\":{{\"time\":{}" : ",{}"), forecast->time_s);
-    const LiveVerdict& expected = forecast->expected;
-    for (std::size_t s = 0; s < states_.size(); ++s) {
-      const auto i = static_cast<Index>(s);
-      signal(s, {expected.predicted(i), expected.lower(i), expected.upper(i)}, {"predicted", "lower", "upper"}, out);
-    }
-    if (as_json) fmt::format_to(to, "}}");
-  }
   fmt::format_to(to, fmt::runtime(as_json ? "}}\n" : "\n"));
 }
 

@@ -13,15 +13,8 @@ namespace modebank::app {
 
 /// Format of the output lines, and their optional fields.
 struct EstimateLines {
-  bool json = false;      ///< NDJSON instead of CSV with a header
-  bool run = false;       ///< lines contain the name of the run
-  bool forecast = false;  ///< lines contain a forecast for the time of the newest sample
-};
-
-/// A forecast that starts from an estimate. It is for the time of the newest sample.
-struct Forecast {
-  double time_s;
-  LiveVerdict expected;
+  bool json = false;  ///< NDJSON instead of CSV with a header
+  bool run = false;   ///< lines contain the name of the run
 };
 
 /// Writes estimates as lines of CSV or NDJSON. An unknown value is empty in CSV and null in NDJSON.
@@ -31,9 +24,8 @@ class EstimateWriter {
 
   /// Appends the CSV header. NDJSON has no header.
   void header(fmt::memory_buffer& out) const;
-  /// `forecast`: null if the lines have no forecast.
   void line(const std::string& run, double time_s, const FilterEstimate& estimate, const LiveVerdict& verdict,
-            const ValidityFlags& flags, const Forecast* forecast, fmt::memory_buffer& out) const;
+            const ValidityFlags& flags, fmt::memory_buffer& out) const;
 
  private:
   std::vector<std::string> states_;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <string>
@@ -13,8 +14,6 @@
 #include "app/cli/track_input.hpp"
 #include "app/cli/track_messages.hpp"
 #include "app/cli/track_output.hpp"
-#include "app/cli/track_thinning.hpp"
-#include "app/cli/track_watchdog.hpp"
 #include "app/cli/validity_flags.hpp"
 #include "app/config/config.hpp"
 #include "filter/step/alarm.hpp"
@@ -26,16 +25,14 @@ namespace modebank::app {
 /// Runs a live filter: reads samples and writes estimates to standard output.
 class Tracker {
  public:
-  /// `alignment`: how the coming samples are aligned. Throws the exceptions of `resume`. Throws ConfigurationError if
-  /// the bank has other columns or a checkpoint cannot be written.
+  /// `alignment`: how the coming samples are aligned. Throws ConfigurationError if the bank has other columns.
   Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment);
 
   /// Filters samples from standard input, line by line, until the input ends.
   void follow_lines();
   /// Filters the samples of recorded runs. `named`: lines contain the run's name.
   void follow_runs(const std::vector<Trajectory>& runs, bool named);
-  /// Ends the stream, also after an error: writes the remaining estimates and the checkpoint. Throws DataError if no
-  /// sample could be used.
+  /// Ends the stream, also after an error: writes the remaining estimates. Throws DataError if no sample could be used.
   void finish(bool failed);
 
  private:
@@ -50,17 +47,16 @@ class Tracker {
   OpenedFilter opened_;
   const Bank& bank_ = opened_.bank;
   AnyFilter& filter_ = *opened_.filter;
-  LiveJudge judge_, forecast_judge_;
+  LiveJudge judge_;
   ValidityJudge validity_;
-  FilterEstimate made_;  ///< copy of the last estimate, because a forecast overwrites the filter's own estimate
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;
-  std::string identity_, run_, place_;
+  std::string run_, place_;
   AlignedSamples samples_;
   Alignment alignment_;
-  double stepped_s_ = 0.0;           ///< time of the last estimate
-  std::optional<double> last_s_;     ///< time of the last sample
-  std::optional<double> resumed_s_;  ///< the last run wrote the estimates up to this time, before its checkpoint
+  double stepped_s_ = 0.0;        ///< time of the last estimate
+  double since_s_ = HUGE_VAL;     ///< between the last two estimates
+  std::optional<double> last_s_;  ///< time of the last sample
   std::optional<BeforeLeap> before_leap_;
   std::optional<TimedSample> first_;     ///< the first sample; kept until the second one arrives
   std::optional<std::size_t> first_at_;  ///< position of the first estimate in out_; empty after it was written
@@ -68,13 +64,8 @@ class Tracker {
   fmt::memory_buffer out_;
   std::optional<LineStream> lines_;  ///< set while standard input is read
   LiveMessages messages_;
-  Watchdog watchdog_;
-  SampleThinning thinning_;
-  bool thinning_told_ = false, checkpoint_due_ = false, checkpoint_fails_ = false;
 
-  void go_on();
   void restart();
-  LineStream::Got next(std::string_view& line);
   void take_lines(std::vector<std::string>& lines);
   void take_last_line(const std::string& line);
   void take(SampleReader::Line kind);
@@ -83,13 +74,9 @@ class Tracker {
   void correct_first(double time_s);
   bool comes_in_time(double time_s);
   bool is_gap(double from_s, double to_s) const;
-  bool is_taken(double time_s);
   void step(const TimedSample& sample);
   void complain(const std::string& reason);
   bool flush();
-  void save() const;
-  void keep();
-  void write(const TimedSample& sample, const FilterEstimate& estimate, const ValidityFlags& flags);
 };
 
 }  // namespace modebank::app

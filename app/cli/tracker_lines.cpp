@@ -1,8 +1,4 @@
 // Lines of standard input for a live filter.
-#include <fmt/chrono.h>
-
-#include <ctime>
-
 #include "app/cli/tracker.hpp"
 
 namespace modebank::app {
@@ -13,16 +9,14 @@ void Tracker::follow_lines() {
   if (lag_s < 0.0)
     messages_.say(fmt::format(
         "inputs come {:.3g} s after the states that they act on. Each estimate waits for its input, but carries the "
-        "time stamp of its sample. {}",
-        -lag_s,
-        config_.track.forecast ? "The columns now and ..._now forecast to the newest sample"
-                               : "--track.forecast true adds the forecast to the newest sample"));
+        "time stamp of its sample",
+        -lag_s));
   if (lag_s > 0.0)
     messages_.say(fmt::format("inputs come {:.3g} s before the states that they act on: they are held back", lag_s));
   lines_.emplace();
   std::vector<std::string> batch;
   std::string_view line;
-  for (auto got = next(line); got != LineStream::Got::end; got = next(line)) {
+  for (auto got = lines_->next(line); got != LineStream::Got::end; got = lines_->next(line)) {
     if (got == LineStream::Got::line && lines_->is_unended()) {
       const std::string last(line);
       take_lines(batch);
@@ -40,15 +34,6 @@ void Tracker::follow_lines() {
   take_lines(batch);
   if (lines_->was_cut())
     messages_.say(fmt::format("line {}: the input was stopped inside this line, which is left out", line_number_ + 1));
-}
-
-LineStream::Got Tracker::next(std::string_view& line) {
-  if (!watchdog_.on()) return lines_->next(line);
-  if (const std::string text = watchdog_.due(LineStream::now_s()); !text.empty())
-    messages_.say(fmt::format("{:%Y-%m-%dT%H:%M:%SZ}: {}", fmt::gmtime(std::time(nullptr)), text));
-  const LineStream::Got got = lines_->next(line, watchdog_.remaining_s(LineStream::now_s()));
-  if (got == LineStream::Got::line || got == LineStream::Got::overlong) watchdog_.line_arrived();
-  return got;
 }
 
 void Tracker::take_lines(std::vector<std::string>& lines) {
@@ -74,15 +59,12 @@ void Tracker::take(SampleReader::Line kind) {
   for (const std::string& note : reader_.table().notes()) messages_.say_note("standard input", note);
   if (kind == SampleReader::Line::blank) return;
   if (kind == SampleReader::Line::malformed) return complain(reader_.reason());
-  if (!writer_) open_writer({config_.track.json || reader_.table().has_objects(), false, config_.track.forecast});
+  if (!writer_) open_writer({config_.track.json || reader_.table().has_objects(), false});
   if (kind == SampleReader::Line::left_out) return complain("data.where is false");
   if (kind != SampleReader::Line::sample) return;
   if (const auto first_s = reader_.table().corrected_first_s()) correct_first(*first_s);
   for (const std::string& remark : reader_.remarks()) messages_.say_once(place_, remark);
   take_sample(reader_.sample());
-  if (!checkpoint_due_ || before_leap_) return;
-  flush();
-  keep();
 }
 
 }  // namespace modebank::app

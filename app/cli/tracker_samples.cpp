@@ -1,7 +1,5 @@
-// Selects the samples that a live filter uses: in order of time, and one per step. After a gap or a jump of the clock,
+// Selects the samples that a live filter uses, in order of time. After a gap or a jump of the clock,
 // the filter starts anew.
-#include <utility>
-
 #include "app/cli/tracker.hpp"
 
 namespace modebank::app {
@@ -22,8 +20,7 @@ void Tracker::take_sample(const TimedSample& sample) {
   }
   last_s_ = sample.time_s;
   samples_.push(sample);
-  while (const TimedSample* const ready = samples_.next())
-    if (is_taken(ready->time_s)) step(*ready);
+  while (const TimedSample* const ready = samples_.next()) step(*ready);
 }
 
 /// The second sample shows that the unit of times was wrong, so the first sample is filtered again.
@@ -72,23 +69,9 @@ bool Tracker::comes_in_time(double time_s) {
                        fmt::format("time goes back from {} s to {} s: the filter starts anew", *last_s_, time_s));
     restart();
     last_s_.reset();
-    resumed_s_.reset();
     return true;
   }
   complain(fmt::format("time {} s is not after {} s", time_s, *last_s_));
-  return false;
-}
-
-/// Some samples are ignored if the stream is faster than the model. Example: a log at 100 Hz for a model that was
-/// learned at 10 Hz.
-bool Tracker::is_taken(double time_s) {
-  if (resumed_s_ && time_s <= *resumed_s_) return false;
-  if (thinning_.takes(time_s)) return true;
-  if (!std::exchange(thinning_told_, true))
-    messages_.say(
-        fmt::format("{}: a sample {:.3g} s after the one before, the archive's model steps {:.3g} s: one of "
-                    "each step is taken, the others get no line",
-                    place_, thinning_.since_s(), bank_.dt_s));
   return false;
 }
 

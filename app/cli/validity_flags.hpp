@@ -16,8 +16,7 @@ struct ValidityFlags {
   bool stamp_late = false;             ///< at least one and a half model steps passed since the sample before
 };
 
-/// Sets the flags for a stream of samples. Its state is derived from SampleFeed, so a filter that continues from a
-/// checkpoint sets the same flags.
+/// Sets the flags for a stream of samples.
 class ValidityJudge {
  public:
   /// `lags`: samples before the filter starts; `dt_s`: period of a model step.
@@ -26,11 +25,6 @@ class ValidityJudge {
 
   /// Call this when the filter starts anew.
   void restart() { samples_ = 0; }
-  /// Continues after `samples` samples; `time_s` is the time of the last one.
-  void go_on(Eigen::Index samples, double time_s) {
-    samples_ = samples;
-    last_s_ = time_s;
-  }
   /// Judges the next sample. `started`: whether the filter has started.
   ValidityFlags judge(double time_s, const Eigen::VectorXd& input, const FilterEstimate& estimate, bool started);
 

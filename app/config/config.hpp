@@ -17,12 +17,7 @@ enum class TrackedFilter { bank, baseline, noise_only, one_motion, drifting, com
 
 struct TrackConfig {
   TrackedFilter filter = TrackedFilter::bank;
-  std::string checkpoint;
-  Index checkpoint_interval = 0;
-  std::string resume;
-  bool forecast = false;
-  double watchdog_s = 0.0;  ///< period of the status lines on standard error; 0: no status lines
-  bool json = false;        ///< set by --json: output lines are JSON objects, whatever the form of the input
+  bool json = false;  ///< set by --json: output lines are JSON objects, whatever the form of the input
 };
 
 /// The [report] section, which limits the size of a page.
@@ -33,8 +28,7 @@ struct ReportConfig {
 
 struct ArchiveConfig {
   std::string output;  ///< empty: the name of the configuration file with the extension .h5, in the current folder
-  std::string input;   ///< archive from which earlier stages are read
-  std::string bank;    ///< archive whose bank is evaluated
+  std::string bank;    ///< archive whose bank is judged; empty: a bank is learned
 };
 
 struct JobConfig {

@@ -13,10 +13,11 @@
 #include "app/config/faults.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
-#include "app/config/path_text.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "ident/base/printable.hpp"
 #include "ident/base/utf8.hpp"
+#include "io/files/output_file.hpp"
+#include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "modebank/base/error.hpp"
 
@@ -220,6 +221,26 @@ Config stored_config(const std::string& resolved, const KeyValues& overrides) {
   apply_overrides(config, overrides, faults);
   faults.refuse();
   return config;
+}
+
+bool is_configuration(const std::filesystem::path& path) {
+  constexpr std::uintmax_t largest = 1 << 22;
+  if (std::filesystem::file_size(path) > largest) return false;
+  const std::string text = read_file(path);
+  try {
+    const std::map<std::string, std::string> values = resolved_values(text);
+    return std::any_of(values.begin(), values.end(), [](const auto& value) { return find_option(value.first); });
+  } catch (const ConfigurationError&) {
+    return ("\n" + text).find("\n[data]") != std::string::npos;  // broken, but no log
+  }
+}
+
+void check_configuration_output(const std::string& option, const std::filesystem::path& path,
+                                const std::vector<std::filesystem::path>& sources, bool force) {
+  check_output({option, path, {"a configuration", is_configuration}}, sources);
+  if (!force && std::filesystem::exists(path))
+    throw ConfigurationError(
+        fmt::format("{} exists: name another file (-o FILE), or overwrite it with --force", path.string()));
 }
 
 Config resolved_config(const std::string& resolved) {

@@ -32,6 +32,13 @@ bool has_ending_of_logs(const std::filesystem::path& path);
 /// Whether a file is a log, by its name or because it contains bytes that no text contains.
 bool looks_like_log(const std::filesystem::path& path);
 
+/// Whether a text file consists of sections and keys, with at least one known key, or has a line [data].
+bool is_configuration(const std::filesystem::path& path);
+
+/// Same as check_output, for a configuration. Users may have edited an existing file, so only `force` replaces it.
+void check_configuration_output(const std::string& option, const std::filesystem::path& path,
+                                const std::vector<std::filesystem::path>& sources, bool force);
+
 /// The [data] and [filter] keys and the seed from an archive's configuration, then the overrides. Keys that this
 /// version does not have are ignored.
 Config stored_config(const std::string& resolved, const KeyValues& overrides);

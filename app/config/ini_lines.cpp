@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "ident/base/printable.hpp"
 #include "ident/base/utf8.hpp"
 
 namespace po = boost::program_options;
@@ -16,15 +17,31 @@ namespace po = boost::program_options;
 namespace modebank::app {
 
 bool is_path(const std::string& key) {
-  return key == "data.root" || key == "archive.output" || key == "archive.input" || key == "archive.bank" ||
-         key == "study.output" || key == "simulate.output";
+  return key == "data.root" || key == "archive.output" || key == "archive.bank" || key == "study.output" ||
+         key == "simulate.output";
 }
 
 bool takes_quotes(const std::string& key) {
   if (is_path(key)) return true;
-  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "weight", "na"})
+  for (const char* of_names : {"derive", "where", "state", "input", "truth", "time", "run", "label", "na"})
     if (key == std::string("data.") + of_names) return true;
   return false;
+}
+
+std::string path_text(const std::string& path) {
+  const std::string shown = printable_name(path);
+  if (shown == path && boost::trim_copy(path) == path && path.find('#') == std::string::npos && !path.starts_with('"'))
+    return path;
+  std::string text = "\"";
+  for (std::size_t i = 0; i < path.size(); ++i) {
+    const char c = path[i];
+    constexpr char second_set = '\xc2';  // first UTF-8 byte of those control characters that have two bytes
+    if (is_control(c) || c == second_set || (i > 0 && path[i - 1] == second_set))
+      text += fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+    else
+      text += (c == '"' || c == '\\' ? "\\" : "") + std::string(1, c);
+  }
+  return text + "\"";
 }
 
 namespace {

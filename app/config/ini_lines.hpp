@@ -25,5 +25,7 @@ bool is_path(const std::string& key);
 /// Whether a key's value may be in double quotes. This holds for paths and for column names, which may contain a #.
 /// Inside the quotes \" \\ \n and \x1b have their usual meaning. In all other keys, quotes are part of the value.
 bool takes_quotes(const std::string& key);
+/// A path as text for a configuration file. It is in double quotes only if it could not be read back without quotes.
+std::string path_text(const std::string& path);
 
 }  // namespace modebank::app

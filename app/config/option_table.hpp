@@ -29,6 +29,7 @@ struct Option {
   bool basic = false;       ///< one of the few keys that most users set; help lists these first
   std::string when = {};    ///< when to change the key: a sentence without its full stop
   bool repeatable = false;  ///< the key may have several lines in a file; `get` separates their values by newlines
+  std::vector<std::string> also = {};  ///< other words by which `help` finds the key
 
   /// The alternatives in `range`, such as "auto | point | comma"; empty if other values are allowed.
   std::vector<std::string> choices() const { return choices_in(range); }

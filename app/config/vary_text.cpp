@@ -172,17 +172,4 @@ std::vector<std::string> parse_together(const std::string& line) {
   return keys;
 }
 
-VaryCondition parse_when(const std::string& line) {
-  const auto [head, text] = split_equation(line);
-  std::vector<std::string> words;
-  boost::split(words, head, boost::is_any_of(" \t"), boost::token_compress_on);
-  if (words.size() != 3 || words[1] != "if") throw std::invalid_argument("is not of the form KEY if OTHER = v1 | v2");
-  variable_option(words[0]);
-  VaryCondition condition{words[0], words[2], {}};
-  const Option& other = variable_option(condition.other);
-  for (const std::string& piece : words_between(text, "|"))
-    for (const std::string& value : expand_piece(piece)) condition.values.push_back(canonical(other, value));
-  return condition;
-}
-
 }  // namespace modebank::app

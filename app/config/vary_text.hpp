@@ -15,16 +15,9 @@ struct VariedKey {
   bool is_range() const { return values.empty(); }
 };
 
-/// One line of study.when: `key` is varied only if `other` has one of these `values`.
-struct VaryCondition {
-  std::string key, other;
-  std::vector<std::string> values;
-};
-
 /// Each parses one line, and checks its keys and values. The returned values have the form of a resolved configuration.
 /// Throws std::invalid_argument with the reason.
 VariedKey parse_vary(const std::string& line);
 std::vector<std::string> parse_together(const std::string& line);
-VaryCondition parse_when(const std::string& line);
 
 }  // namespace modebank::app

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "app/text/calibration_text.hpp"
 #include "app/text/judged_runs.hpp"
@@ -35,6 +36,12 @@ ModeErrors errors_of(const Bank& bank, const Mode& mode) {
     errors.A.row(i) = theta.segment(i * r, n).transpose();
     errors.B.row(i) = theta.segment(i * r + n, m).transpose();
     if (s.intercept) errors.c(i) = theta(i * r + r - 1);
+    if (s.centre.empty()) continue;  // else c is the constant of theta minus [A B] times the centre
+    Eigen::VectorXd slope(r);
+    slope << -s.acting_centre(), 1.0;
+    const Eigen::MatrixXd& all = mode.parameter_covariance;
+    const double variance = all.rows() == s.parameters() ? slope.dot(all.block(i * r, i * r, r, r) * slope) : 0.0;
+    errors.c(i) = variance > 0.0 ? std::sqrt(variance) : not_a_number;
   }
   return errors;
 }

@@ -1,13 +1,121 @@
+#include <array>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "app/export/forms.hpp"
-#include "app/export/json_parts.hpp"
+#include "ident/base/distributions.hpp"
+#include "io/archive/bank/units.hpp"
 
 namespace modebank::app {
 namespace {
 
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
+/// A JSON object whose members keep the order in which they were added.
+using OrderedJson = nlohmann::ordered_json;
+
+constexpr std::array gate_shares{0.95, 0.99, 0.999};
+
+OrderedJson rows_of(const Unit& units, Index rows, Index cols) {
+  OrderedJson list = OrderedJson::array();
+  for (Index i = 0; i < rows; ++i) {
+    OrderedJson row = OrderedJson::array();
+    for (Index j = 0; j < cols; ++j) row.push_back(units[static_cast<std::size_t>(i * cols + j)]);
+    list.push_back(row);
+  }
+  return list;
+}
+
+/// An unknown number (NaN) becomes null.
+OrderedJson vector_json(const VectorXd& v) {
+  OrderedJson list = OrderedJson::array();
+  for (const double value : v) list.push_back(value);
+  return list;
+}
+
+OrderedJson matrix_json(const MatrixXd& M) {
+  OrderedJson rows = OrderedJson::array();
+  for (Index i = 0; i < M.rows(); ++i) rows.push_back(vector_json(M.row(i).transpose()));
+  return rows;
+}
+
+Unit units_of(const std::vector<Channel>& channels) {
+  Unit units;
+  for (const Channel& channel : channels) units.push_back(channel.unit);
+  return units;
+}
+
+/// A matrix with its standard errors (null if unknown) and the units of its entries (empty if unknown).
+OrderedJson quantity(const MatrixXd& value, const MatrixXd& error, const Unit& units) {
+  OrderedJson result = {{"value", matrix_json(value)}};
+  result["standard_error"] = error.size() == value.size() ? matrix_json(error) : OrderedJson(nullptr);
+  result["unit"] = rows_of(units, value.rows(), value.cols());
+  return result;
+}
+
+OrderedJson channels_json(const std::vector<Channel>& channels) {
+  OrderedJson list = OrderedJson::array();
+  for (const Channel& channel : channels) list.push_back({{"name", channel.name}, {"unit", channel.unit}});
+  return list;
+}
+
+OrderedJson verdict_json(const ExportedBank& bank) {
+  const bool judged = !bank.judged_on.empty();
+  return {{"answer", judged ? OrderedJson(name_of(bank.verdict)) : OrderedJson("not judged")},
+          {"judged_on", judged ? OrderedJson(bank.judged_on) : OrderedJson(nullptr)},
+          {"share_in_95_band", judged ? OrderedJson(bank.coverage_95) : OrderedJson(nullptr)},
+          {"text", bank.verdict_text()},
+          {"finding", bank.finding}};
+}
+
+OrderedJson source_json(const ExportedBank& bank) {
+  return {{"archive", bank.archive},
+          {"sha256", bank.sha256},
+          {"filter", bank.filter},
+          {"created", bank.provenance.created},
+          {"modebank_version", bank.provenance.modebank_version},
+          {"config_hash", bank.provenance.config_hash},
+          {"data_hash", bank.provenance.data_hash}};
+}
+
+/// The families of the modes: title, modes, use, stay, means of the time constant and of the gains.
+OrderedJson families_json(const ExportedBank& bank) {
+  OrderedJson list = OrderedJson::array();
+  const Unit units = ratios(units_of(bank.measurements), units_of(bank.recorded_inputs));
+  for (std::size_t f = 0; f < bank.families.size(); ++f) {
+    const ModeFamily& family = bank.families[f];
+    list.push_back({{"family", f}, {"title", family.title()}, {"modes", family.modes}});
+    list.back()["used"] = bank.use.empty() ? OrderedJson(nullptr) : OrderedJson(family.use);
+    list.back()["stay_s"] = family.stay_s;
+    list.back()["time_constant_s"] = {{"value", family.slowest.time_constant_s},
+                                      {"standard_error", family.slowest.time_constant_error_s}};
+    list.back()["gain"] = quantity(family.gain, family.gain_error, units);
+  }
+  return list;
+}
+
+/// The index of a mode's family in the list of families.
+OrderedJson family_of(const ExportedBank& bank, Index mode) {
+  for (std::size_t f = 0; f < bank.families.size(); ++f)
+    for (const Index member : bank.families[f].modes)
+      if (member == mode) return f;
+  return nullptr;
+}
+
+Unit per_second(Unit units) {
+  for (std::string& unit : units)
+    if (!unit.empty()) unit += "/s";
+  return units;
+}
+
+/// Thresholds of the normalised innovation squared. There is one for each number of signals that a sample may have.
+OrderedJson gates_json(Index signals) {
+  OrderedJson gates = OrderedJson::array();
+  for (Index n = 1; n <= signals; ++n)
+    for (const double share : gate_shares)
+      gates.push_back({{"signals", n}, {"share", share}, {"nis", chi_square_quantile(share, static_cast<double>(n))}});
+  return gates;
+}
 
 /// `remark_of`: returns the remark on the value at an index; empty if the value is reliable.
 template <class RemarkOf>
@@ -38,6 +146,8 @@ OrderedJson mode_json(const ExportedBank& exported, Index k) {
   result["B"] = quantity(mode.model.B, errors.B, ratios(states, inputs));
   result["c"] = quantity(mode.model.c, errors.c, states);
   result["Q"] = quantity(mode.Q, mode.Q_standard_error, outer(states));
+  result["Q_per_s"] =
+      quantity(mode.Q / exported.bank.dt_s, mode.Q_standard_error / exported.bank.dt_s, per_second(outer(states)));
   result["parameters"] =
       parameters_json(exported.bank.theta(k), mode.standard_error, exported.parameter_names, exported.parameter_units,
                       [&](Index i) { return doubt_about_parameter(exported, k, i); });
@@ -100,7 +210,8 @@ OrderedJson filter_json(const ExportedBank& exported) {
     result["drift"] = {{"q", bank.drift.rates.q},
                        {"p0", bank.drift.rates.p0},
                        {"leak", bank.drift.rates.leak},
-                       {"regressor_scale", vector_json(bank.drift.scale)}};
+                       {"regressor_scale", vector_json(bank.drift.scale)},
+                       {"regressor_centre", vector_json(bank.structure.acting_centre())}};
   return result;
 }
 
@@ -127,6 +238,7 @@ std::string to_json(const ExportedBank& exported) {
       quantity(bank.C, MatrixXd::Zero(bank.C.rows(), bank.C.cols()), ratios(outputs, units_of(exported.states)));
   page["R"] = quantity(bank.R, bank.R_standard_error, outer(outputs));
   page["transition"] = transition_json(exported);
+  page["gates"] = gates_json(bank.C.rows());
   page["filter"] = filter_json(exported);
   page["families"] = families_json(exported);
   page["modes"] = OrderedJson::array();

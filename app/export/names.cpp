@@ -21,13 +21,10 @@ constexpr const char* c_words =
     "or_eq private protected public reflexpr register reinterpret_cast requires restrict return short signed sizeof "
     "static static_assert static_cast struct switch synchronized template this thread_local throw true try typedef "
     "typeid typename typeof typeof_unqual union unsigned using virtual void volatile wchar_t while xor xor_eq";
-constexpr const char* python_words =
-    "False None True and as assert async await break case class continue def del elif else except finally for from "
-    "global if import in is lambda match nonlocal not or pass raise return try type while with yield";
 
-std::set<std::string> words_of(Language language) {
+std::set<std::string> keywords() {
   std::set<std::string> words;
-  boost::algorithm::split(words, language == Language::c ? c_words : python_words, boost::algorithm::is_space());
+  boost::algorithm::split(words, c_words, boost::algorithm::is_space());
   return words;
 }
 
@@ -38,15 +35,10 @@ std::string identifier(const std::string& name) {
   return is_digit(result.front()) ? "n" + result : result;
 }
 
-/// JSON text in ASCII. Invalid UTF-8 is replaced. All other characters become \uXXXX.
-std::string ascii_json(std::string_view text) {
-  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
 }  // namespace
 
-std::vector<std::string> identifiers(const std::vector<std::string>& names, Language language) {
-  std::set<std::string> taken = words_of(language);
+std::vector<std::string> identifiers(const std::vector<std::string>& names) {
+  std::set<std::string> taken = keywords();
   std::vector<std::string> result;
   for (const std::string& name : names) {
     const std::string base = identifier(name);
@@ -58,22 +50,17 @@ std::vector<std::string> identifiers(const std::vector<std::string>& names, Lang
 }
 
 std::string comment_text(std::string_view text) {
-  std::string result = nlohmann::json::parse(ascii_json(text)).get<std::string>();
+  // JSON replaces bytes that are not UTF-8.
+  using nlohmann::json;
+  std::string result = json::parse(json(text).dump(-1, ' ', false, json::error_handler_t::replace)).get<std::string>();
   for (char& c : result)
     if (is_control(c) || c == '\\') c = ' ';
-  // Line breaks that are not ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR. YAML and other formats treat them as
-  // line breaks.
+  // Line breaks that are not ASCII: NEL, LINE SEPARATOR and PARAGRAPH SEPARATOR.
   for (const char* breaks : {"\xc2\x85", "\xe2\x80\xa8", "\xe2\x80\xa9"})
     boost::algorithm::replace_all(result, breaks, " ");
   boost::algorithm::replace_all(result, "*/", "* /");
   boost::algorithm::replace_all(result, "/*", "/ *");
   boost::algorithm::replace_all(result, "?\?/", "? ?/");  // ??/ is the trigraph of a backslash
-  return result;
-}
-
-std::string quoted_scalar(std::string_view text) {
-  std::string result = ascii_json(text);
-  boost::algorithm::replace_all(result, "\x7f", "\\u007f");  // YAML readers reject this character
   return result;
 }
 

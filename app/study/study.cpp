@@ -8,7 +8,6 @@
 #include "app/study/answers/best_runs.hpp"
 #include "app/study/answers/merge_study.hpp"
 #include "app/study/answers/study_text.hpp"
-#include "app/study/launch/slurm.hpp"
 #include "app/study/launch/submit_study.hpp"
 #include "app/study/run/claim.hpp"
 #include "app/study/run/run_trials.hpp"
@@ -84,16 +83,13 @@ void print_plan(const StudyCommand& command, const StudyPlan& plan) {
 }
 
 /// Throws DataError if the study had to stop.
-RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
-  const StudyConfig& study = command.config.study;
+RunResult run_plan(const StudyCommand& command, const StudyPlan& plan) {
   command.store.remove_leftovers();
-  const TrialGroups share = shard_of(group_trials(command.config, plan), study.shard_index, study.shard_count);
   StudyProgress progress(plan.table.varied_keys);
-  const RunResult result =
-      run_trials({command.config, command.call.typed, plan.provenance.modebank_version}, plan, share,
-                 [&](const TrialRow& row, const TrialReport& report, std::size_t finished, std::size_t all) {
-                   progress.tell(row, report, finished, all);
-                 });
+  const RunResult result = run_trials({command.config, command.call.typed, plan.provenance.modebank_version}, plan,
+                                      group_trials(command.config, plan),
+                                      [&](const TrialRow& row, const TrialReport& report, std::size_t finished,
+                                          std::size_t all) { progress.tell(row, report, finished, all); });
   const std::string counts = fmt::format("{} runs made, {} existed, {} failed, in {}", result.computed, result.present,
                                          result.failed.size(), duration_text(result.seconds));
   if (result.broken)
@@ -101,9 +97,6 @@ RunResult run_share(const StudyCommand& command, const StudyPlan& plan) {
         fmt::format("the study stopped ({}): {}\nfinished runs are kept; the same command continues from there", counts,
                     *result.broken));
   command.call.say(fmt::format("run       {}\n", counts));
-  if (!result.failed.empty() && study.on_failure == OnFailure::stop)
-    throw DataError(fmt::format("the study stopped at a run that failed (study.on_failure = stop): {}",
-                                describe_trial(plan.table.varied_keys, plan.table.rows[result.failed.front()])));
   return result;
 }
 
@@ -131,7 +124,7 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
   const Answers answers = answer(table);
   write_study(command.store, plan, table, answers);
   command.call.say(table_text(table, command.store));
-  write_best_runs(command.store.folder(), command.config, table, answers);
+  write_best_run(command.store.folder(), command.config, table, answers);
   command.call.say(fmt::format("\n{}\ntable     {}, {}\n", answers_text(table, answers),
                                (command.store.folder() / "study.h5").string(),
                                (command.store.folder() / "study.csv").string()));
@@ -141,7 +134,7 @@ int merge(const StudyCommand& command, const std::set<std::string>& whole) {
 int run_all(const StudyCommand& command) {
   const StudyPlan plan = settle_plan(command);
   print_plan(command, plan);
-  const RunResult result = run_share(command, plan);
+  const RunResult result = run_plan(command, plan);
   return merge(command, {result.whole.begin(), result.whole.end()});
 }
 
@@ -149,7 +142,7 @@ int show_status(const StudyCommand& command) {
   require_plan(command);
   const StudyPlan plan = read_plan(command.store.folder());
   const StudyTable table = collect_table(command.store, plan);
-  command.call.say(table_text(table, command.store) + slurm_text(slurm_view(command.store.folder())));
+  command.call.say(table_text(table, command.store));
   return is_complete(table) ? 0 : 1;
 }
 
@@ -162,7 +155,7 @@ int submit(const StudyCommand& command) {
   check_submission(command.call);
   const StudyPlan plan = settle_plan(command);
   print_plan(command, plan);
-  command.call.say(submit_study(command.call, plan, collect_table(command.store, plan)));
+  command.call.say(submit_study(command.call, collect_table(command.store, plan)));
   return 0;
 }
 
@@ -178,7 +171,7 @@ int do_study(const StudyCall& call) {
     case StudyStage::plan:
       return plan_alone(command);
     case StudyStage::run:
-      return run_share(command, settle_plan(command)).failed.empty() ? 0 : 1;
+      return run_plan(command, settle_plan(command)).failed.empty() ? 0 : 1;
     case StudyStage::merge:
       return merge(command, {});
     case StudyStage::status:

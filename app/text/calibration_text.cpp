@@ -27,8 +27,8 @@ std::string reason_words(const DiagnosticsRow& row) {
     case CalibrationReason::nis:
       return fmt::format("{}mean NIS {:.3g} ({:.3g} to {:.3g} passes)",
                          undecided ? "" : fmt::format("errors are {} than stated, ", over ? "larger" : "smaller"),
-                         row.nis_mean, undecided ? least_nis * signals : row.nis_lower,
-                         undecided ? most_nis * signals : row.nis_upper);
+                         row.nis_mean, (undecided ? least_nis : 1.0 - nis_tolerance) * signals,
+                         (undecided ? most_nis : 1.0 + nis_tolerance) * signals);
     case CalibrationReason::pattern:
       return fmt::format("errors resemble the ones before (lag-1 correlations within {:g} pass)", largest_correlation);
     case CalibrationReason::band:

@@ -5,14 +5,11 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <cstdlib>
 #include <string_view>
 
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
-#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
-#include "app/text/warnings.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -37,7 +34,7 @@ std::string narrowed(std::string text, int columns) {
 /// A labelled paragraph of at most `most` lines. A longer text is cut and ends in "..."; `show` prints all of it.
 std::string section(const char* label, const std::string& text, int most, int columns) {
   if (text.empty()) return "";
-  std::vector<std::string> lines = lines_of(wrapped(padded_label(label) + text, columns));
+  std::vector<std::string> lines = lines_of(wrapped(fmt::format("{:<10}{}", label, text), columns));
   if (static_cast<int>(lines.size()) > most) {
     lines.resize(static_cast<std::size_t>(most));
     lines.back() = first_columns(lines.back(), columns - 4) + " ...";
@@ -46,7 +43,7 @@ std::string section(const char* label, const std::string& text, int most, int co
 }
 
 std::string file_line(const std::string& file, int columns) {
-  const std::string line = padded_label("archive") + file, rest = "  (`modebank show` prints the rest)";
+  const std::string line = fmt::format("{:<10}{}", "archive", file), rest = "  (`modebank show` prints the rest)";
   return (columns_of(line + rest) <= columns ? line + rest : line) + "\n";
 }
 
@@ -80,35 +77,12 @@ bool is_plain(const std::string& name) {
   });
 }
 
-/// The configuration of the command that made the archive, or the configuration that `run LOG` wrote beside the
-/// archive. Empty if unknown.
-std::string configuration_of(const Archive& archive, const std::string& file) {
-  std::vector<std::string> words;
-  boost::algorithm::split(words, archive.provenance.command_line, boost::is_any_of(" "));
-  if (words.size() < 3 || words[1] != "run") return "";
-  if (words[2].ends_with(".ini")) return words[2];
-  return file.ends_with(".h5") && !words[2].starts_with("-") ? file.substr(0, file.size() - 3) + ".ini" : "";
-}
-
-/// The command that made the archive. It has its options if it is then still short.
-std::string run_command(const Archive& archive, const std::string& program, const std::string& configuration) {
-  constexpr std::size_t short_command = 64;
-  const std::string& typed = archive.provenance.command_line;
-  const std::size_t options = typed.find(configuration) + configuration.size();
-  const bool as_typed = typed.find(" run " + configuration) != std::string::npos && typed.size() <= short_command;
-  return program + " run " + configuration + (as_typed ? typed.substr(options) : "");
-}
-
-/// Replaces placeholders, so that the commands can be typed. Commands use the program's name as the user called it.
-/// They also use the names of archive and configuration, unless these are long.
-std::string as_typed(std::string next, const Archive& archive, const std::string& program, const std::string& file) {
-  if (const std::string configuration = configuration_of(archive, file); is_plain(configuration)) {
-    boost::replace_all(next, "`modebank run CONFIG", "`" + run_command(archive, program, configuration));
-    boost::replace_all(next, " CONFIG", " " + configuration);
-  }
-  boost::replace_all(next, "`modebank ", "`" + program + " ");
-  if (is_plain(file)) boost::replace_all(next, " ARCHIVE", " " + file);
-  return next;
+/// Replaces placeholders, so that the commands can be typed. Commands use the program's name as the user called it, and
+/// the name of the archive, unless it is long.
+std::string as_typed(std::string text, const std::string& program, const std::string& file) {
+  boost::replace_all(text, "`modebank ", "`" + program + " ");
+  if (is_plain(file)) boost::replace_all(text, " ARCHIVE", " " + file);
+  return text;
 }
 
 }  // namespace
@@ -118,14 +92,15 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
   const FirstScreen screen = make_first_screen(archive, settings);
   const int columns = width > 0 ? std::clamp(width, least_columns, screen_columns) : screen_columns;
   const auto part = [&](const char* label, const std::string& text, int most) {
-    return section(label, as_typed(text, archive, program, file), most, columns);
+    return section(label, as_typed(text, program, file), most, columns);
   };
-  const std::string before = part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
-                             part("structure", screen.structure, 4) + part("finding", screen.finding, finding_lines);
-  const std::string after = part("band", screen.band, 3) +
-                            part("mean", screen.mean, screen.free_run_start == 0 ? 3 : 4) +
-                            part("warning", screen.warning, screen_lines) + part("next", screen.next, 3) +
-                            part("use", screen.use, 3) + file_line(file, columns);
+  const std::string point = screen.point.empty() ? "" : narrowed(std::string(10, ' ') + screen.point, columns) + "\n";
+  const std::string before =
+      part("doubt", screen.doubt, screen_lines) + part("read", screen.read, screen.inputs_ahead ? 3 : 2) +
+      part("structure", screen.structure, 4) + point + part("finding", screen.finding, finding_lines);
+  const std::string after =
+      part("band", screen.band, 3) + part("mean", screen.mean, screen.free_run_start == 0 ? 3 : 4) +
+      part("warning", screen.warning, screen_lines) + part("use", screen.use, 3) + file_line(file, columns);
   const int mode_lines = std::max(screen_lines - line_count(before) - line_count(after), least_mode_lines);
   return before + modes_section(archive, screen, mode_lines, columns, time_unit(settings)) + after;
 }

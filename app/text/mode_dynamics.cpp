@@ -93,15 +93,15 @@ Eigen::MatrixXd derivatives(const Bank& bank, const Eigen::VectorXd& theta, Eige
   return jacobian;
 }
 
-}  // namespace
-
-DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const NumbersOf& numbers) {
+/// Standard errors of numbers that are computed from a mode's model, by the delta method. A standard error is NaN if it
+/// is unknown, or if a small step of theta changes the number of values.
+Eigen::VectorXd errors_of_numbers(const Bank& bank, Eigen::Index mode, const NumbersOf& numbers) {
   const Mode& chosen = bank.modes.at(static_cast<std::size_t>(mode));
-  const Eigen::VectorXd values = numbers(chosen.model);
+  const Eigen::Index count = numbers(chosen.model).size();
   const Eigen::MatrixXd covariance = covariance_of(chosen, bank.structure.parameters());
-  if (covariance.size() == 0) return {values, Eigen::VectorXd::Constant(values.size(), not_a_number)};
-  const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), values.size(), numbers);
-  Eigen::VectorXd errors(values.size());
+  if (covariance.size() == 0) return Eigen::VectorXd::Constant(count, not_a_number);
+  const Eigen::MatrixXd J = derivatives(bank, bank.theta(mode), count, numbers);
+  Eigen::VectorXd errors(count);
   for (Eigen::Index i = 0; i < errors.size(); ++i) {
     // A parameter whose error is unknown affects only the numbers that depend on it.
     std::vector<Eigen::Index> moving;
@@ -110,16 +110,17 @@ DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode, const Number
     const Eigen::RowVectorXd slope = J(i, moving);
     errors(i) = std::sqrt((slope * covariance(moving, moving) * slope.transpose()).value());
   }
-  return {values, errors};
+  return errors;
 }
+
+}  // namespace
 
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {
   const Mode& chosen = bank.modes.at(static_cast<std::size_t>(mode));
   ModeDynamics dynamics = dynamics_of(bank, chosen.model);
   const Eigen::Index gains = dynamics.gain.size(), decays = static_cast<Eigen::Index>(dynamics.decays.size());
-  const Eigen::VectorXd errors = derived_numbers(bank, mode, [&](const LinearModel& model) {
-                                   return numbers_of(dynamics_of(bank, model));
-                                 }).errors;
+  const Eigen::VectorXd errors =
+      errors_of_numbers(bank, mode, [&](const LinearModel& model) { return numbers_of(dynamics_of(bank, model)); });
   for (Eigen::Index i = 0; i < decays; ++i)
     dynamics.decays[static_cast<std::size_t>(i)].time_constant_error_s = errors(i);
   dynamics.gain_error = errors.tail(gains).reshaped(dynamics.gain.rows(), dynamics.gain.cols());

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <functional>
 #include <vector>
 
 #include "filter/step/bank.hpp"
@@ -30,13 +29,5 @@ struct ModeDynamics {
 /// refined bank, both come from one covariance. In other banks, the correlations over windows replace the correlations
 /// of their mean.
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode);
-
-/// Numbers that are computed from a mode's model. Their standard errors come from the delta method. A standard error is
-/// NaN if it is unknown, or if a small step of theta changes the number of values.
-struct DerivedNumbers {
-  Eigen::VectorXd values, errors;
-};
-DerivedNumbers derived_numbers(const Bank& bank, Eigen::Index mode,
-                               const std::function<Eigen::VectorXd(const LinearModel&)>& numbers);
 
 }  // namespace modebank

@@ -8,7 +8,6 @@
 
 #include "app/text/mode_names.hpp"
 #include "app/text/number_text.hpp"
-#include "app/text/robot_numbers.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
 
@@ -42,41 +41,22 @@ std::string family_cell(const ModeFamily& family, bool several) {
   return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
 }
 
-/// The track width [m] of each family, for a robot with two rows of wheels; empty for other systems.
-std::vector<std::string> track_cells(const Archive& archive, const std::vector<ModeFamily>& families) {
-  if (!archive.recording) return {};
-  const RobotBank robot{*archive.bank, archive.recording->states, archive.recording->inputs};
-  const RobotChannels channels = robot_channels(robot);
-  if (channels.yaw_rate < 0 || channels.left < 0) return {};
-  std::vector<std::string> cells;
-  bool any = false;
-  for (const ModeFamily& family : families) {
-    const Estimate track = family_numbers(robot, family, channels, {}).separation_m;
-    any = any || track.known();
-    cells.push_back(track.known() ? estimate_text(track.value, track.error) + " m" : "-");
-  }
-  return any ? cells : std::vector<std::string>();
-}
-
-std::vector<std::string> family_headings(const GainNames& gains, bool several, bool track) {
+std::vector<std::string> family_headings(const GainNames& gains, bool several) {
   std::vector<std::string> headings{several ? "family (modes)" : "mode", "used", "stay", "time constant"};
-  if (track) headings.emplace_back("track width");
   headings.insert(headings.end(), gains.names.begin(), gains.names.end());
   return headings;
 }
 
 std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vector<ModeFamily>& families, bool several,
-                                        const std::vector<std::string>& tracks, const std::string& unit) {
+                                        const std::string& unit) {
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
   for (const ModeFamily& family : families) {
     const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
     ModeTable::Row row{family.modes,
-                       family.title(),
                        {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay, unit),
                         no_decays ? not_identifiable : time_words(family, unit)}};
-    if (!tracks.empty()) row.cells.push_back(tracks[rows.size()]);
     const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
@@ -118,7 +98,6 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width,
     std::vector<std::string> times;
     for (const Decay& decay : dynamics.decays) times.push_back(decay_words(decay, "+-", unit));
     ModeTable::Row row{{used.mode},
-                       mode_title(archive.mode_names, used.mode),
                        {shortened(mode_cell(archive.mode_names, used.mode)), fmt::format("{:.1f} %", 100 * used.use),
                         stay_words(used, unit), no_decays ? "-" : per_sample_words(dynamics.decays),
                         no_decays ? not_identifiable : boost::algorithm::join(times, "; ")}};
@@ -137,9 +116,8 @@ std::string all_families(const Archive& archive, const GainNames& gains, int wid
   std::string text =
       "\nfamilies of modes: means over the modes, weighted by use. The errors include the modes' own errors and the "
       "differences between the modes\n";
-  const std::vector<std::string> tracks = track_cells(archive, families);
-  text = wrapped(text, width) + text_of(family_headings(gains, true, !tracks.empty()),
-                                        family_rows(archive, families, true, tracks, unit), true, width);
+  text = wrapped(text, width) +
+         text_of(family_headings(gains, true), family_rows(archive, families, true, unit), true, width);
   for (const ModeFamily& family : families) {
     if (family.modes.size() == 1) continue;
     std::string line = family.title();
@@ -170,11 +148,10 @@ ModeTable mode_table(const Archive& archive, Index rows, const std::string& unit
   const bool fit = rows == 0 || (told == all ? all : told + 1) <= rows;
   const Index shown = fit ? told : std::clamp<Index>(rows - 1, 1, told);
   const GainNames gains = gains_of(archive);
-  const std::vector<std::string> tracks = track_cells(archive, families);
-  ModeTable table{family_headings(gains, several, !tracks.empty()), {}, all, all - shown, 0.0, gains.unit};
+  ModeTable table{family_headings(gains, several), {}, all, all - shown, 0.0, gains.unit};
   for (Index i = shown; i < all; ++i) table.others_use += use[static_cast<std::size_t>(i)];
   families.resize(static_cast<std::size_t>(shown));
-  table.rows = family_rows(archive, families, several, tracks, unit);
+  table.rows = family_rows(archive, families, several, unit);
   return table;
 }
 

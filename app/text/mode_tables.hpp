@@ -17,7 +17,6 @@ std::string time_words(const ModeFamily& family, const std::string& unit, const 
 struct ModeTable {
   struct Row {
     std::vector<Index> modes;  ///< the family's modes, the most used mode first
-    std::string title;         ///< name of the family
     std::vector<std::string> cells;
   };
   std::vector<std::string> headings;

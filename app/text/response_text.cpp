@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <vector>
 
 #include "app/text/number_text.hpp"
@@ -56,15 +57,49 @@ std::string unit_of_gain(const Channel& state, const Channel& input) {
   return input.unit.empty() ? " " + state.unit : fmt::format(" {}/{}", state.unit, input.unit);
 }
 
-/// Increase per second of one state whose pole lies near 1, after the other poles have settled; NaN for several states.
-double slope_per_s(const Bank& single, Index input) {
+/// Coefficients of 1, q^-1, ... in A(q) x = B(q) u, for one state and one input. A model of differences has a factor
+/// 1 - q^-1 in both, which is divided out.
+struct Polynomials {
+  std::vector<double> A, B;
+};
+
+Polynomials polynomials(const Bank& single, Index input) {
+  constexpr double rounding = 1e-9;
   const LinearStructure& s = single.structure;
-  if (s.states > 1) return std::nan("");
   const LinearModel& model = single.modes.front().model;
-  double effect = 0.0, age = 0.0;
-  for (Index lag = 0; lag < s.input_lags; ++lag) effect += model.B(0, lag * s.inputs + input);
-  for (Index lag = 1; lag < s.state_lags; ++lag) age += static_cast<double>(lag) * model.A(0, lag);
-  return effect / (1.0 + age) / single.dt_s;  // residue at 1: B(1) / (1 + sum of j a_j)
+  Polynomials of{{1.0, -1.0}, std::vector<double>(static_cast<std::size_t>(s.input_delay[input]), 0.0)};
+  of.A.resize(static_cast<std::size_t>(s.state_lags) + 1);
+  for (Index lag = 0; lag < s.state_lags; ++lag) of.A[static_cast<std::size_t>(lag) + 1] -= model.A(0, lag);
+  double size = 0.0;
+  for (Index lag = 0; lag < s.input_lags; ++lag) {
+    of.B.push_back(model.B(0, lag * s.inputs + input));
+    size += std::abs(of.B.back());
+  }
+  const auto sum = [](const std::vector<double>& a) { return std::accumulate(a.begin(), a.end(), 0.0); };
+  if (std::abs(sum(of.A)) > rounding || std::abs(sum(of.B)) > rounding * size) return of;
+  for (std::vector<double>* one : {&of.A, &of.B}) {
+    std::partial_sum(one->begin(), one->end(), one->begin());
+    one->pop_back();
+  }
+  return of;
+}
+
+/// The straight line that the response of one state follows, whose pole lies near 1, after the other poles have
+/// settled: its slope, and the time at which it leaves zero.
+struct Ramp {
+  double per_s = std::nan(""), after_s = 0.0;  ///< NaN for several states
+};
+
+Ramp ramp(const Bank& single, Index input) {
+  if (single.structure.states > 1) return {};
+  const auto [A, B] = polynomials(single, input);
+  double ends = 0.0, late = 0.0, first = 0.0, second = 0.0;  // B(1), B'(1), -A'(1), -A''(1), by q^-1
+  for (std::size_t j = 0; j < B.size(); ++j) ends += B[j], late += static_cast<double>(j) * B[j];
+  for (std::size_t j = 1; j < A.size(); ++j) {
+    first -= static_cast<double>(j) * A[j];
+    second -= static_cast<double>(j * (j - 1)) * A[j];
+  }
+  return {ends / first / single.dt_s, (late / ends - second / (2.0 * first) - 1.0) * single.dt_s};
 }
 
 std::string words_of(const Bank& single, const Channel& state, const Channel& input, const Pair& pair,
@@ -79,13 +114,16 @@ std::string words_of(const Bank& single, const Channel& state, const Channel& in
   const std::string slower = least > 0.0 && least < 1.0
                                  ? fmt::format("slower than {:.2g} {}", -single.dt_s / std::log(least), unit)
                                  : std::string("not within the runs");
+  const double share = response.never_settles;
+  const std::string never = share > 0.05 ? fmt::format(", {:.0f} % of the draws never settle", 100.0 * share) : "";
   if (at_one) {
-    const double slope = slope_per_s(single, j);
-    const std::string rate =
-        std::isfinite(slope) ? fmt::format(" {:.3g}{} per {}", slope, unit_of_gain(state, input), unit) : std::string();
-    return name + "integrates" + rate + ", or settles " + slower;
+    const auto [slope, after_s] = ramp(single, j);
+    std::string rate;
+    if (std::isfinite(slope)) rate = fmt::format(" {:.3g}{} per {}", slope, unit_of_gain(state, input), unit);
+    if (after_s > single.dt_s / 2.0) rate += fmt::format(" after {:.2g} {}", after_s, unit);
+    return name + "integrates" + rate + ", or settles " + slower + never;
   }
-  if (!(error <= std::abs(gain) / 3.0) && !std::isnan(error)) return name + "settles " + slower;
+  if (!(error <= std::abs(gain) / 3.0) && !std::isnan(error)) return name + "settles " + slower + never;
   std::string text =
       fmt::format("{}63 % of {}{} after {} {}", name, estimate_text(gain, error), unit_of_gain(state, input),
                   estimate_text(response.value.response_s(i, j), response.error.response_s(i, j)), unit);
@@ -93,19 +131,17 @@ std::string words_of(const Bank& single, const Channel& state, const Channel& in
     text += fmt::format(", within 5 % after {:.3g} {}", settling, unit);
   if (const double over = response.value.overshoot(i, j); over > 0.05)
     text += fmt::format(", overshoot {:.0f} %", 100.0 * over);
-  return text;
+  return text + never;
 }
 
 }  // namespace
 
-std::string response_words(const Bank& single, const Recording& recording, Index most, const std::string& unit) {
-  const std::vector<Pair> pairs = pairs_of(single, recording);
+std::vector<std::string> response_words(const Bank& single, const Recording& recording, const std::string& unit) {
   std::vector<std::string> words;
-  for (const Pair& pair : pairs)
-    if (most == 0 || std::ssize(words) < most)
-      words.push_back(words_of(single, recording.states[static_cast<std::size_t>(pair.state)],
-                               recording.inputs[static_cast<std::size_t>(pair.input)], pair, unit));
-  return fmt::format("{}", fmt::join(words, "; "));
+  for (const Pair& pair : pairs_of(single, recording))
+    words.push_back(words_of(single, recording.states[static_cast<std::size_t>(pair.state)],
+                             recording.inputs[static_cast<std::size_t>(pair.input)], pair, unit));
+  return words;
 }
 
 }  // namespace modebank::app

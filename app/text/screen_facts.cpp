@@ -11,6 +11,7 @@
 #include "app/text/calibration_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/operating_point.hpp"
 #include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/warnings.hpp"
@@ -93,11 +94,11 @@ std::string mean_words(const FirstScreen& screen) {
 }
 
 std::string warning_words(const Archive& archive) {
-  const std::vector<Warning> warnings = archive_warnings(archive);
+  const std::vector<std::string> warnings = archive_warnings(archive);
   if (warnings.empty()) return "";
-  return warnings.size() == 1 ? warnings.front().text
+  return warnings.size() == 1 ? warnings.front()
                               : fmt::format("{} warnings (`modebank show ARCHIVE` prints all), the first: {}",
-                                            warnings.size(), warnings.front().text);
+                                            warnings.size(), warnings.front());
 }
 
 /// Sets the members that contain scores. Call it after the role and the competitor are set.
@@ -152,13 +153,14 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   FirstScreen screen;
   screen.read = read_words(archive, settings);
   if (archive.structure) screen.structure = structure_sentence(*archive.structure, acted_on(archive));
-  if (archive.baseline && archive.recording)
-    if (const std::string words = response_words(*archive.baseline, *archive.recording, 1, time_unit(settings));
-        !words.empty())
-      screen.structure += (screen.structure.empty() ? "one linear model: " : "; ") + words;
+  if (archive.baseline && archive.recording) {
+    if (const auto words = response_words(*archive.baseline, *archive.recording, time_unit(settings)); !words.empty())
+      screen.structure += (screen.structure.empty() ? "one linear model: " : "; ") + words.front();
+    screen.point = operating_words(*archive.baseline, *archive.recording);
+  }
+  screen.doubt = level_doubt(archive);
   screen.inputs_ahead = input_lag(archive, settings) < 0.0;
   screen.warning = warning_words(archive);
-  screen.next = next_step(archive, settings);
   screen.use = use_words(archive);
   screen.forecasts = named_forecasts(archive);
   screen.role = judged_role(archive);

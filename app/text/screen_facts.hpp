@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,12 +9,14 @@
 #include "app/text/errors_ahead.hpp"
 #include "app/text/mode_tables.hpp"
 #include "app/text/named_forecasts.hpp"
-#include "app/text/next_step.hpp"
 #include "io/archive/archive.hpp"
 
 /// Content of the first screen of a run, in words and numbers. It is printed on a terminal (first_screen.hpp) and shown
 /// on the report's page.
 namespace modebank::app {
+
+/// Resolved keys and their values, from the configuration in the archive.
+using Settings = std::map<std::string, std::string>;
 
 /// Whether the archive contains a bank and the bank's scores. The screen needs both.
 bool has_first_screen(const Archive& archive);
@@ -21,7 +24,8 @@ bool has_first_screen(const Archive& archive);
 /// Content of the screen, computed once. first_screen prints it, and the report's page shows it. A sentence that does
 /// not apply is empty.
 struct FirstScreen {
-  std::string read, structure, finding, band, mean, warning, next;
+  std::string read, structure, finding, band, mean, warning;
+  std::string point, doubt;              ///< operating_words and level_doubt of the single linear model
   std::string use;                       ///< text: the filter that explains the motion, and the filter to predict with
   std::vector<NamedForecast> forecasts;  ///< the filters to predict with, with their numbers
   bool inputs_ahead = false;             ///< whether the inputs' stamps are late

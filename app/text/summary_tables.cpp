@@ -82,9 +82,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
                    {"N_eff", 8},
                    {"BIC", 12},
                    {"AIC", 12},
-                   {"ICL", 12},
                    {"naive BIC", 12},
-                   {"held out", 10},
                    {"iter", 6},
                    {"converged", 9},
                    {"agreeing", 8}},
@@ -97,8 +95,7 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
     }
     table.add({count, shape, fmt::format("{:.3f}", c.log_likelihood), std::to_string(c.parameters),
                fmt::format("{:.1f}", c.effective_samples), fmt::format("{:.3f}", c.bic), fmt::format("{:.3f}", c.aic),
-               fmt::format("{:.3f}", c.icl), fmt::format("{:.3f}", c.bic_naive), fixed_or_short(c.heldout, 4),
-               std::to_string(c.iterations), c.converged ? "yes" : "no",
+               fmt::format("{:.3f}", c.bic_naive), std::to_string(c.iterations), c.converged ? "yes" : "no",
                fmt::format("{}/{}", c.agreeing_restarts, c.restarts)},
               fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  is at the floor" : ""));
   }
@@ -226,9 +223,8 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
     const Mode& mode = bank.modes[static_cast<std::size_t>(k)];
-    LinearModel model = mode.model;
-    if (full_form) model.A.diagonal().array() += 1.0;
-    const Eigen::VectorXd theta = pack(bank.structure, model);
+    Eigen::VectorXd theta = bank.theta(k);
+    for (Index i = 0; full_form && i < bank.structure.states; ++i) theta(i * bank.structure.regressors() + i) += 1.0;
     std::vector<std::string> cells{mode_cell(names, k), fmt::format("{:.3f}", mode.weight)};
     for (Index i = 0; i < theta.size(); ++i)
       cells.push_back(unidentifiable[static_cast<std::size_t>(i)]

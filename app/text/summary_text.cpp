@@ -11,6 +11,7 @@
 #include "app/text/lag_text.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/summary_tables.hpp"
 #include "app/text/terminal.hpp"
@@ -60,7 +61,6 @@ std::string bank_text(const Bank& bank) {
   std::string text = fmt::format("bank      {} modes", bank.mode_count());
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
-  if (bank.shrinking.modes > 0) text += "; " + shrinking_words(bank.shrinking);
   if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty())
     text += fmt::format(", theta drifts in a run (rate {:g}, start {:g}, leak {:g})", rates.q, rates.p0, rates.leak);
   text += fmt::format("; R = {:.4g}", fmt::join(bank.R.diagonal(), " "));
@@ -121,11 +121,9 @@ std::string verdicts_text(const Archive& archive) {
     if (row.mode >= 0 || row.role != role) continue;
     text += fmt::format("{:<11} {:<14} in its bands: {}\n", row.filter, name_of(row.verdict), coverage_words(row));
     text += fmt::format("{:>11} too far {:.1f} %, too close {:.1f} %; ", "", 100 * row.too_far, 100 * row.too_close);
-    text += fmt::format("mean NIS {} [{:.3f}, {:.3f}]", fixed_or_short(row.nis_mean, 3), row.nis_lower, row.nis_upper);
+    text += fmt::format("mean NIS {}", fixed_or_short(row.nis_mean, 3));
     if (has_modes(archive, row)) text += fmt::format("; mean entropy {}", fixed_or_short(row.entropy, 3));
-    if (!std::isnan(row.nees_mean))
-      text +=
-          fmt::format("; NEES {} [{:.3f}, {:.3f}]", fixed_or_short(row.nees_mean, 3), row.nees_lower, row.nees_upper);
+    if (!std::isnan(row.nees_mean)) text += fmt::format("; NEES {}", fixed_or_short(row.nees_mean, 3));
     if (row.state_rmse.size() > 0 && row.state_rmse.allFinite())
       text += fmt::format("; state RMSE {:.4g}", fmt::join(row.state_rmse, " "));
     text += row.flags.empty() ? "\n" : fmt::format("\n{:>11} {}\n", "", row.flags);
@@ -133,9 +131,9 @@ std::string verdicts_text(const Archive& archive) {
   if (text.empty()) return "";
   return fmt::format(
       "\nStated uncertainty on {} runs: percent of the samples inside the 50, 90, 95 and 99 % bands (92.5 to 97.5 %\n"
-      "in the 95 % band passes). Brackets hold 95 % intervals, for NIS and NEES of a true filter's mean. Entropy of "
-      "the\n"
-      "mode probabilities: 0 one mode at a time, 1 all alike.\n{}",
+      "in the 95 % band passes). Brackets hold 95 % intervals. Entropy of the mode probabilities: 0 one mode at a "
+      "time,\n"
+      "1 all alike.\n{}",
       words_for(role), text);
 }
 
@@ -166,6 +164,15 @@ std::string horizon_text(const Archive& archive) {
   return text + combination_text(archive, role);
 }
 
+/// The responses of all states to all inputs, a line each.
+std::string responses_text(const Archive& archive) {
+  if (!archive.baseline || !archive.recording) return "";
+  std::string text;
+  for (const std::string& words : response_words(*archive.baseline, *archive.recording))
+    text += "          " + words + "\n";
+  return text;
+}
+
 std::string finding_text(const Archive& archive) { return archive.finding ? "\n" + archive.finding->text + "\n" : ""; }
 
 }  // namespace
@@ -185,6 +192,7 @@ std::string summary_text(const Archive& archive, int width) {
   if (archive.recording) text += data_text(*archive.recording);
   if (archive.lag) text += lag_text(*archive.lag);
   if (archive.structure) text += structure_text(*archive.structure, acted_on(archive), width);
+  text += responses_text(archive);
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);

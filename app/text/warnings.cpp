@@ -15,14 +15,13 @@ void WindowCounts::add(const WindowFits& fits) {
   for (const int value : fits.status) ++status[static_cast<std::size_t>(value)];
 }
 
-std::vector<Warning> window_warnings(const WindowCounts& counts) {
-  std::vector<Warning> warnings;
-  if (const Index failed = counts.of(FitStatus::failed); failed > 0)
-    warnings.push_back(
-        {WarningKind::failed_windows, fmt::format("{} of {} windows have no finite fit and are left out; their samples "
-                                                  "may have values too large to square; see `modebank check`",
-                                                  failed, counts.total())});
-  return warnings;
+std::string window_warning(const WindowCounts& counts) {
+  const Index failed = counts.of(FitStatus::failed);
+  if (failed == 0) return "";
+  return fmt::format(
+      "{} of {} windows have no finite fit and are left out; their samples may have values too large to square; see "
+      "`modebank check`",
+      failed, counts.total());
 }
 
 std::string refinement_warning(MeasuredFit fit) {
@@ -68,24 +67,23 @@ std::string unscored_warning(const Archive& archive, double least_share) {
 
 constexpr double many_unscored = 0.05;  // a smaller fraction causes no warning
 
-std::vector<Warning> archive_warnings(const Archive& archive) {
-  std::vector<Warning> warnings;
+std::vector<std::string> archive_warnings(const Archive& archive) {
+  std::vector<std::string> warnings;
+  const auto add = [&](const std::string& text) {
+    if (!text.empty()) warnings.push_back(text);
+  };
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);
-    warnings = window_warnings(counts);
+    add(window_warning(counts));
   }
-  const auto add = [&](WarningKind kind, const std::string& text) {
-    if (!text.empty()) warnings.push_back({kind, text});
-  };
   if (archive.mixture_makes_bank())
-    for (const std::string& text : selection_warnings(archive.mixture->candidates)) add(WarningKind::mixture, text);
+    for (const std::string& text : selection_warnings(archive.mixture->candidates)) add(text);
   if (archive.bank) {
-    const bool limited = archive.measured_fit == MeasuredFit::iteration_limit;
-    add(limited ? WarningKind::iteration_limit : WarningKind::stalled, refinement_warning(archive.measured_fit));
-    add(WarningKind::no_stable_mode, stability_warning(*archive.bank));
+    add(refinement_warning(archive.measured_fit));
+    add(stability_warning(*archive.bank));
   }
-  add(WarningKind::unscored, unscored_warning(archive, many_unscored));
+  add(unscored_warning(archive, many_unscored));
   return warnings;
 }
 

@@ -17,21 +17,8 @@ struct WindowCounts {
   Index total() const { return std::accumulate(status.begin(), status.end(), Index{0}); }
 };
 
-/// Subject of a warning:
-/// - failed_windows: fits that are not finite.
-/// - mixture: the choice of the mixture that the bank is made of.
-/// - iteration_limit, stalled: the fit with measurement noise.
-/// - no_stable_mode: all modes are unstable.
-/// - unscored: measured samples without a score.
-enum class WarningKind { failed_windows, mixture, iteration_limit, stalled, no_stable_mode, unscored };
-
-struct Warning {
-  WarningKind kind;
-  std::string text;
-};
-
-/// Warnings on windows without a finite fit.
-std::vector<Warning> window_warnings(const WindowCounts& counts);
+/// Warning on windows without a finite fit; empty if there are none.
+std::string window_warning(const WindowCounts& counts);
 
 /// Warning on the refinement of the bank; empty if it has converged.
 std::string refinement_warning(MeasuredFit fit);
@@ -45,6 +32,6 @@ std::string unscored_warning(const Archive& archive, double least_share = 0.0);
 
 /// All warnings on an archive's final result. A warning on a mixture that refinement has replaced does not count.
 /// `show` prints each warning in its section.
-std::vector<Warning> archive_warnings(const Archive& archive);
+std::vector<std::string> archive_warnings(const Archive& archive);
 
 }  // namespace modebank::app

@@ -49,7 +49,7 @@ std::string windows_text(const WindowFits& fits, const WindowCounts& counts, con
       fmt::format("windows   {} of {} steps: {} converged, {} rank deficient, {} at the iteration limit, {} failed\n",
                   counts.total(), fits.length, counts.of(FitStatus::converged), counts.of(FitStatus::rank_deficient),
                   counts.of(FitStatus::iteration_limit), counts.of(FitStatus::failed));
-  for (const Warning& warning : window_warnings(counts)) text += "warning   " + warning.text + "\n";
+  if (const std::string warning = window_warning(counts); !warning.empty()) text += "warning   " + warning + "\n";
   text += "global    ";
   for (std::size_t i = 0; i < labels.size(); ++i) {
     const auto k = static_cast<Index>(i);

@@ -8,7 +8,7 @@ import re
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 HEADERS = ["layout_data.hpp", "bank/layout_bank.hpp", "bank/layout_drifting.hpp", "layout_evaluation.hpp", "layout.hpp"]
-ATTRIBUTES = {"attribute", "optional_attribute", "attribute_unless", "constant_attribute", "attribute_texts", "optional_attribute_texts"}
+ATTRIBUTES = {"attribute", "attribute_unless", "constant_attribute", "attribute_texts", "optional_attribute_texts"}
 ARRAYS = {"field", "optional_field", "derived_field", "optional_derived_field", "through_rows", "text", "texts"}
 TABLES = {"table", "optional_table", "table_rows"}
 COLUMN = re.compile(r"(?:\w+_)?column\(")

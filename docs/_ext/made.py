@@ -1,27 +1,24 @@
-"""The directive in front of a table of results."""
+"""The directive in front of a table of results: the command that made it, its revision, date and machine."""
 from docutils import nodes
 from docutils.parsers.rst import directives
 from sphinx.util.docutils import SphinxDirective
 
+FIELDS = ("revision", "date", "machine")
+
 
 class Made(SphinxDirective):
-    """How a table was made; check_results.py describes its content."""
-
     required_arguments = 1
     final_argument_whitespace = True
     has_content = False
-    option_spec = dict.fromkeys(("revision", "date", "machine", "reads", "data", "hash", "data_hash", "older"), directives.unchanged)
+    option_spec = dict.fromkeys(FIELDS, directives.unchanged_required)
 
     def run(self):
-        given = self.options
-        text = f"Made by ``{self.arguments[0]}``; revision {given['revision']}, {given['date']}, {given['machine']}"
-        text += f"; hash {given.get('hash', 'none')}" + (f", data {given['data_hash']}" if "data_hash" in given else "") + "."
+        if missing := [name for name in FIELDS if name not in self.options]:
+            raise self.error(f"a table without {', '.join(missing)}")
+        revision, date, machine = (self.options[name] for name in FIELDS)
         line = nodes.paragraph("", "", classes=["made"])
-        for part, piece in enumerate(text.split("``")):
-            line += nodes.literal(piece, piece) if part % 2 else nodes.Text(piece)
-        if "older" in given:
-            note = f" Not of this version: {given['older']}."
-            line += nodes.emphasis(note, note)
+        line += [nodes.Text("Made by "), nodes.literal("", self.arguments[0])]
+        line += nodes.Text(f"; revision {revision}, {date}, {machine}.")
         return [line]
 
 

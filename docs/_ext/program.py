@@ -3,6 +3,7 @@
 A page holds <!-- modebank: keys -->, commands, terms, headers or archive where they belong; nothing of it is written down twice.
 Roles: {confval}`window.length` leads to a key, {term}`evidence` to a term, {command}`run` to a command.
 """
+import functools
 import json
 import os
 import pathlib
@@ -21,11 +22,11 @@ SECTIONS = {
     "mixture": "How the windows' parameters are clustered: [](../explanation/mixture.md).",
     "bank": "How a bank of modes is learned from the clusters and refined: [](../explanation/refinement.md).",
     "filter": "How a bank is stepped, scored and smoothed: [](../explanation/filter.md).",
-    "archive": "Where results go and which earlier ones are taken up.",
+    "archive": "Where results go, and an existing bank to judge.",
     "job": "Threads and seed.",
-    "study": "What a parameter study varies, and how its runs are made: [](../tutorials/first_study.md).",
+    "study": "Varied keys, and runs of a parameter study: [](../howto/studies.md).",
     "track": "The live filter: [](../howto/live_filter.md).",
-    "report": "Pages: [](../howto/report.md).",
+    "report": "Pages: [](../howto/read_archive.md).",
     "simulate": "Runs with known truth by {eq}`eq-model`; `configs/systems` has the built-in systems.",
 }
 
@@ -34,27 +35,10 @@ def ask(*words):
     return subprocess.run([str(BUILD / "modebank"), *words], check=True, capture_output=True, text=True).stdout
 
 
-def key_rows():
-    """(key, range, unit, default, help), in the program's order."""
-    for line in ask("help", "--markdown").splitlines()[2:]:
-        cells = [cell.strip().replace("\\|", "|") for cell in re.split(r"(?<!\\)\|", line)[1:-1]]
-        yield cells[0].strip("`"), *cells[1:3], cells[3].strip("`"), cells[4]
-
-
-def command_rows():
-    """(group, name), in the program's order."""
-    group = ""
-    for line in ask("help").split("\nEvery command has\n", 1)[0].splitlines()[1:]:
-        if line and not line.startswith(" "):
-            group = line
-        elif named := re.match(r"  (\w+)  ", line):
-            yield group, named[1]
-
-
-def schema_of_keys():
-    """The text on each key in the schema for editors."""
-    sections = json.loads(ask("config", "--schema"))["properties"]
-    return {f"{section}.{name}": key.get("oneOf", [key])[0] for section, content in sections.items() for name, key in content["properties"].items()}
+@functools.cache
+def described():
+    """Commands, keys and terms, in the program's order."""
+    return json.loads(ask("help", "--json"))
 
 
 def terms():
@@ -67,25 +51,27 @@ def plain(text):
 
 
 def keys_page():
-    lines, section, schema = [], None, schema_of_keys()
-    for key, allowed, unit, default, text in key_rows():
-        if key.split(".")[0] != section:
-            section = key.split(".")[0]
+    lines, section = [], None
+    for key in described()["keys"]:
+        if key["key"].split(".")[0] != section:
+            section = key["key"].split(".")[0]
             lines += [f"## {section}", "", SECTIONS.get(section, ""), ""]
-        facts = f"allowed: {plain(allowed)}" + (f"; unit: {plain(unit)}" if unit else "")
-        facts += f"; default: `{default}`" if default else "; default: empty"
-        facts += "; **basic**" if schema[key]["x-basic"] else ""
-        facts += f"; changes the stage {schema[key]['x-stage']} and those that follow" if "x-stage" in schema[key] else ""
-        lines += [f"````{{confval}} {key}", plain(text[:1].upper() + text[1:]) + ".", "", f"*{facts}*", "", f"When to change it: {plain(schema[key]['x-when'])}.", "````", ""]
+        facts = f"allowed: {plain(key['allowed'])}" + (f"; unit: {plain(key['unit'])}" if key["unit"] else "")
+        facts += f"; default: `{key['default']}`" if key["default"] else "; default: empty"
+        facts += "; **basic**" if key["basic"] else ""
+        facts += f"; changes the stage {key['stage']} and those that follow" if key["stage"] else ""
+        text = plain(key["help"][:1].upper() + key["help"][1:])
+        lines += [f"````{{confval}} {key['key']}", text + ".", "", f"*{facts}*", "", f"When to change it: {plain(key['when'])}.", "````", ""]
     return "\n".join(lines)
 
 
 def commands_page():
     lines, heading = [], None
-    for group, name in command_rows():
-        if group != heading:
-            heading = group
-            lines += [f"## {group}", ""]
+    for command in described()["commands"]:
+        if command["group"] != heading:
+            heading = command["group"]
+            lines += [f"## {heading}", ""]
+        name = command["name"]
         lines += [f"````{{command}} {name}", "```text", ask("help", name).rstrip(), "```", "````", ""]
     return "\n".join(lines)
 

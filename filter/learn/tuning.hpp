@@ -73,8 +73,7 @@ struct RefineTuning {
 
   /// Weights of the prior towards one motion, in transitions. All are tried for the best start.
   std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
-  std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, towards which modes are shrunk
-  double shrinkage_digits = 1e-3;             ///< accuracy of the share at which a shrunk bank is stable
+  std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, for the prior towards one motion
 
   // Switching by state and input.
   double weight_width = 30.0;  ///< prior sd of the weights in units of the regressors' standard deviation. With the

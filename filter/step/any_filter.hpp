@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -17,16 +16,11 @@ class AnyFilter {
   /// As BankFilter::step.
   virtual const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                      const Eigen::Ref<const Eigen::VectorXd>& measurement) = 0;
-  /// Prediction for a later time, with `input` held until then. The result is an estimate without measurement. The
-  /// filter does not change.
-  virtual FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) = 0;
   virtual bool started() const = 0;
   virtual void restart() = 0;
   /// Saves the present state, and restores it.
   virtual void remember() = 0;
   virtual void go_back() = 0;
-  /// The filter of a bank, which has a snapshot; null for a combination.
-  virtual BankFilter* of_bank() { return nullptr; }
 
  protected:
   AnyFilter() = default;
@@ -41,18 +35,10 @@ class OneFilter final : public AnyFilter {
                              const Eigen::Ref<const Eigen::VectorXd>& measurement) override {
     return filter_.step(time_s, input, measurement);
   }
-  FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override {
-    const FilterSnapshot now = filter_.snapshot();
-    const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(filter_.estimate().innovation.size(), not_a_number);
-    FilterEstimate ahead = filter_.step(time_s, input, nothing);
-    filter_.restore(now);
-    return ahead;
-  }
   bool started() const override { return filter_.started(); }
   void restart() override { filter_.restart(); }
   void remember() override { remembered_ = filter_.snapshot(); }
   void go_back() override { filter_.restore(*remembered_); }
-  BankFilter* of_bank() override { return &filter_; }
 
  private:
   BankFilter filter_;

@@ -34,7 +34,13 @@ LinearStructure structure_of(const BankDescription& d) {
   if (d.state_lags < 1 || d.modes.front().A.rows % d.state_lags != 0)
     throw std::invalid_argument("A has " + std::to_string(d.modes.front().A.rows) + " rows, not a multiple of " +
                                 std::to_string(d.state_lags) + " state lags");
-  return {d.modes.front().A.rows / d.state_lags, d.inputs, d.intercept, d.state_lags, d.input_lags, d.input_delay};
+  return {d.modes.front().A.rows / d.state_lags,
+          d.inputs,
+          d.intercept,
+          d.state_lags,
+          d.input_lags,
+          d.input_delay,
+          d.centre};
 }
 
 modebank::RunningNoise to_internal(const RunningNoise& noise) {
@@ -137,6 +143,7 @@ BankDescription Bank::description() const {
   d.input_lags = bank_->structure.input_lags;
   d.input_delay = bank_->structure.input_delay;
   d.intercept = bank_->structure.intercept;
+  d.centre = bank_->structure.centre;
   d.noise_memory = {bank_->noise_adaptation.forgetting, bank_->noise_adaptation.prior_samples};
   d.noise_by_state = {to_matrix(bank_->noise_factor.directions), to_vector(bank_->noise_factor.weights),
                       bank_->noise_factor.offset};

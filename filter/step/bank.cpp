@@ -165,6 +165,10 @@ void check_sizes(const Bank& bank) {
   if (bank.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
   for (std::size_t j = 0; j < bank.modes.size(); ++j)
     check_mode(bank.modes[j], bank.structure, bank.terms.count(), "mode " + std::to_string(j));
+  if (const LinearStructure& s = bank.structure; !s.centre.empty() && !s.intercept)
+    throw std::invalid_argument("a centre of the bank needs an intercept");
+  else if (!s.centre.empty())
+    expect_size("centre", std::ssize(s.centre), 1, s.states + s.inputs, 1);
   const Index n_y = bank.C.rows(), K = bank.mode_count();
   if (n_y < 1) throw std::invalid_argument("C of the bank is empty");
   expect_size("C", n_y, bank.C.cols(), n_y, bank.structure.dimension());

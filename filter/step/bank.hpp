@@ -82,7 +82,6 @@ struct Bank {
   std::vector<std::string> input_names;
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
-  Shrinking shrinking;                            ///< shrinkage of the learned modes
   std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear models
   NoiseAdaptation noise_adaptation;               ///< used by filters with adaptive noise
   BankDrift drift;                                ///< drift of each mode's theta within a run; empty without drift

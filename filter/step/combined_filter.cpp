@@ -78,25 +78,6 @@ void CombinedFilter::combine() {
   mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
 }
 
-FilterEstimate CombinedFilter::forecast(double time_s, const Eigen::VectorXd& input) {
-  std::vector<FilterEstimate> ahead;
-  std::vector<double> known;
-  for (const auto& filter : filters_) {
-    FilterEstimate& one = ahead.emplace_back(filter->forecast(time_s, input));
-    one.innovation = -one.prediction.head(one.innovation.size());  // innovation for a measurement of zero; differences
-                                                                   // of innovations are then differences of the
-                                                                   // filters' predictions
-    known.push_back(one.prediction.array().isNaN().any() ? not_a_number : 0.0);
-  }
-  for (std::size_t i = 0; i < ahead.size(); ++i) said_[i] = &ahead[i];
-  FilterEstimate mixed;
-  take_measured(ahead.front(), mixed);
-  mix(filter::ForecastWeights::spoken_weights(weights_.weights(), known), mixed);
-  mixed.innovation.setConstant(not_a_number);
-  mixed.nis = not_a_number;
-  return mixed;
-}
-
 void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed) const {
   const Index n = mixed.innovation.size();
   for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit, &mixed.pit_width})

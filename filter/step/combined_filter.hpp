@@ -26,7 +26,6 @@ class CombinedFilter final : public AnyFilter {
   CombinedFilter(std::vector<std::unique_ptr<AnyFilter>> filters, const std::vector<double>& start);
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement) override;
-  FilterEstimate forecast(double time_s, const Eigen::VectorXd& input) override;
   bool started() const override { return filters_.front()->started(); }
   void restart() override;
   void remember() override;

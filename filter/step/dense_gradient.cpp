@@ -31,9 +31,8 @@ struct ByState {
 
 class DenseGradient {
  public:
-  DenseGradient(const Bank& bank, const Trajectory& run, const VectorXd& weight, const FilterOptions& options)
+  DenseGradient(const Bank& bank, const Trajectory& run, const FilterOptions& options)
       : run_(run),
-        weight_(weight),
         model_(bank, options),
         instants_(bank, run),
         step_(model_),
@@ -66,7 +65,6 @@ class DenseGradient {
  private:
   static constexpr Index stretch_length = 100;
   const Trajectory& run_;
-  const VectorXd& weight_;
   FilterModel<any, any> model_;
   RunInstants instants_;
   FilterStep<any, any> step_;
@@ -95,8 +93,7 @@ class DenseGradient {
     FilterState<any> state = before;
     by_prior_ = by_.probability;
     if (step_to(model_, instants_, t, run_, state, step_))
-      back_over_measurement(run_.state.col(instant.sample), weight_.size() > 0 ? weight_(instant.sample) : 1.0,
-                            state.mode_probability);
+      back_over_measurement(run_.state.col(instant.sample), state.mode_probability);
     for (std::size_t j = 0; j < by_.modes.size(); ++j)
       back_over_motion(j, K == 1 ? before.modes[0] : step_.mixed[j], instants_.inputs.col(t));
     if (K > 1) back_over_mixing(before);
@@ -105,8 +102,8 @@ class DenseGradient {
   /// Goes back over Bayes' rule and the update of every mode. Converts derivatives with respect to the estimates into
   /// derivatives with respect to the predictions.
   template <class Y>
-  void back_over_measurement(const Y& y, double weight, const VectorXd& posterior) {
-    const VectorXd by_log = posterior.array() * (weight + by_.probability.array() - by_.probability.dot(posterior));
+  void back_over_measurement(const Y& y, const VectorXd& posterior) {
+    const VectorXd by_log = posterior.array() * (1.0 + by_.probability.array() - by_.probability.dot(posterior));
     by_prior_ = (step_.predicted_probability.array() >= impossible_probability)
                     .select(by_log.cwiseQuotient(step_.predicted_probability), 0.0);
     MatrixXd by_R = MatrixXd::Zero(y.size(), y.size());
@@ -194,9 +191,8 @@ bool has_dense_gradient(const Bank& bank, const FilterOptions& options) {
          bank.drift.empty() && bank.terms.empty() && bank.noise_factor.empty();
 }
 
-BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
-                            const FilterOptions& options) {
-  return DenseGradient(bank, run, weight, options).go_back();
+BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  return DenseGradient(bank, run, options).go_back();
 }
 
 }  // namespace modebank

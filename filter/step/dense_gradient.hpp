@@ -12,7 +12,6 @@ namespace modebank {
 bool has_dense_gradient(const Bank& bank, const FilterOptions& options);
 /// Requires has_dense_gradient. Stores a hundred samples at a time. All samples except the last hundred are filtered
 /// twice.
-BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
-                            const FilterOptions& options);
+BankGradient dense_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

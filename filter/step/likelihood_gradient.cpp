@@ -39,16 +39,15 @@ bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options) {
   return VectorGradient::can_step(bank, options) || has_dense_gradient(bank, options);
 }
 
-BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
-                                     const FilterOptions& options) {
+BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
-  if (!VectorGradient::can_step(bank, options)) return dense_gradient(bank, run, weight, options);
+  if (!VectorGradient::can_step(bank, options)) return dense_gradient(bank, run, options);
   VectorGradient gradient(bank, options);
   gradient.reserve(run.samples());
   RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
     if (starts) return gradient.start(feed.start());
     for (Index i = 1; i < feed.steps(); ++i) gradient.skip(feed.inputs());
-    gradient.step(feed.inputs(), run.state.col(k), weight.size() > 0 ? weight(k) : 1.0);
+    gradient.step(feed.inputs(), run.state.col(k));
   });
   return gradient.go_back();
 }

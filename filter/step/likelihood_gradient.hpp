@@ -30,11 +30,10 @@ struct BankGradient {
 /// Whether the gradient is available for this filter.
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 
-/// The gradient of sum_k weight_k log p(y_k | earlier) of one run. It is the exact derivative of the filter's
+/// The gradient of sum_k log p(y_k | earlier) of one run. It is the exact derivative of the filter's
 /// computation. It costs a few filter passes for any number of parameters (reverse-mode differentiation; Griewank &
-/// Walther 2008, "Evaluating derivatives"). `weight`: one per sample; if empty, all weights are one. The conditions are
-/// those of log_likelihood (filter/judge/run/evaluate.hpp) and has_likelihood_gradient.
-BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
-                                     const FilterOptions& options);
+/// Walther 2008, "Evaluating derivatives"). The conditions are those of log_likelihood (filter/judge/run/evaluate.hpp)
+/// and has_likelihood_gradient.
+BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

@@ -60,19 +60,6 @@ bool is_utf8(std::string_view bytes) {
   }
 }
 
-std::u16string basic_utf16(std::string_view text) {
-  constexpr char16_t replacement = 0xFFFD;
-  std::u16string result;
-  while (!text.empty()) {
-    const std::size_t bytes = character_bytes(text);
-    unsigned code = static_cast<unsigned char>(text.front()) & (bytes == 1 ? 0x7FU : bytes == 2 ? 0x1FU : 0x0FU);
-    for (std::size_t i = 1; i < bytes; ++i) code = code << 6 | (static_cast<unsigned char>(text[i]) & 0x3FU);
-    result += bytes == 0 || bytes > 3 ? replacement : static_cast<char16_t>(code);
-    text.remove_prefix(std::max<std::size_t>(1, bytes));
-  }
-  return result;
-}
-
 void append_utf8(std::string& text, std::uint32_t code) {
   const auto put = [&](std::uint32_t byte) { text += static_cast<char>(static_cast<unsigned char>(byte)); };
   if (code < 0x80) return put(code);

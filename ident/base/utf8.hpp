@@ -12,10 +12,6 @@ std::size_t character_bytes(std::string_view text);
 /// Whether the bytes are valid UTF-8 (RFC 3629: no surrogates, no overlong forms, at most U+10FFFF).
 bool is_utf8(std::string_view bytes);
 
-/// The text in UTF-16 without surrogates. U+FFFD replaces a byte that starts no character, and a character beyond
-/// U+FFFF.
-std::u16string basic_utf16(std::string_view text);
-
 /// Appends a code point; only its lowest 21 bits are used.
 void append_utf8(std::string& text, std::uint32_t code);
 

@@ -25,10 +25,6 @@ void check(const RecordedRun& run, Index states, Index inputs) {
           "state is " + shape(run.state) + ", not " + std::to_string(states) + " x " + std::to_string(samples));
   require(fits(run.input, inputs), run,
           "input is " + shape(run.input) + ", not " + std::to_string(inputs) + " x " + std::to_string(samples));
-  require(run.weight.empty() || static_cast<Index>(run.weight.size()) == samples, run,
-          "there are " + std::to_string(run.weight.size()) + " weights for " + std::to_string(samples) + " samples");
-  require(std::all_of(run.weight.begin(), run.weight.end(), [](double w) { return w >= 0.0 && w < 1e300; }), run,
-          "a weight is negative or not finite");
   require(std::adjacent_find(run.time_s.begin(), run.time_s.end(), std::not_fn(std::less<>())) == run.time_s.end(), run,
           "times do not increase");
 }
@@ -54,7 +50,6 @@ Trajectory to_trajectory(const RecordedRun& run, Index states, Index inputs) {
   trajectory.time_s = view(run.time_s);
   trajectory.state = view(run.state);
   trajectory.input = view(run.input);
-  trajectory.weight = view(run.weight);
   return trajectory;
 }
 

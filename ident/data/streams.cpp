@@ -149,12 +149,6 @@ void average_rows(const Stream& stream, const std::vector<Index>& rows, const Ve
   values(rows, Eigen::all) = average_ending({stream.time_s, stream.values(rows, Eigen::all)}, time_s, step_s);
 }
 
-VectorXd interpolate_weights(const Stream& weights, const VectorXd& time_s) {
-  const MatrixXd positive = (weights.values.array() > 0.0).cast<double>();
-  const MatrixXd share = interpolate({weights.time_s, positive}, time_s);
-  return (share.array() < 1.0).select(0.0, interpolate(weights, time_s)).transpose();
-}
-
 MatrixXd hold(const Stream& stream, const VectorXd& time_s) {
   assert(stream.time_s.size() >= 1 && stream.values.cols() == stream.time_s.size());
   const double tolerance = time_tolerance(stream.time_s);

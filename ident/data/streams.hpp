@@ -46,10 +46,6 @@ void average_rows(const Stream& stream, const std::vector<Eigen::Index>& rows, c
 /// the first value is used. A sample that is later than a time only by rounding is also used. Requires N >= 1.
 Eigen::MatrixXd hold(const Stream& stream, const Eigen::VectorXd& time_s);
 
-/// Weights of interpolated samples. They are the interpolated weights, or zero if a contributing sample has weight
-/// zero. `weights` is 1 x N.
-Eigen::VectorXd interpolate_weights(const Stream& weights, const Eigen::VectorXd& time_s);
-
 /// A gap lies between two samples if their distance is above this number of median periods of the stream.
 inline constexpr double gap_periods = 5.0;
 

@@ -13,7 +13,6 @@ Trajectory stretch(const Trajectory& run, Eigen::Index first, Eigen::Index count
   part.state = run.state.middleCols(first, count);
   part.input = run.input.middleCols(first, count);
   if (run.truth.size() > 0) part.truth = run.truth.middleCols(first, count);
-  if (run.weight.size() > 0) part.weight = run.weight.segment(first, count);
   return part;
 }
 

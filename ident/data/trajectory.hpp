@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -44,10 +43,6 @@ struct Trajectory {
   std::int64_t time_origin_ns = 0;  ///< ns since 1970 at time_s = 0, if the log has absolute times
   std::string file = {};            ///< file of the run's inputs; empty if there was none
 
-  /// Sample weights, N or empty (all one). weight(k) multiplies the loss of the error of the transition that ends in
-  /// sample k; weight(0) is unused. Weights are finite and at least 0; a weight of 0 excludes the transition. Only
-  /// ratios of weights matter, because every fit divides by the mean over its transitions.
-  Eigen::VectorXd weight;
   /// Signals in memory of the calling program: n and m rows of N columns. `state` and `input` are then empty. Windows
   /// of linear models with one-step residuals read the signals through states() and inputs(). No other function accepts
   /// such a run.
@@ -86,10 +81,6 @@ struct Recording {
     Index sum = 0;
     for (const Trajectory& run : runs) sum += run.role == role ? run.transitions() : 0;
     return sum;
-  }
-  /// Whether any run has sample weights.
-  bool weighted() const {
-    return std::any_of(runs.begin(), runs.end(), [](const Trajectory& run) { return run.weight.size() > 0; });
   }
   /// Median sample period over all runs [s]; 0 without any transition.
   double median_period_s() const;

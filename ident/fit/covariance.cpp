@@ -41,10 +41,6 @@ Eigen::ArrayXXd slopes(const CovarianceInput& in) {
   return (r.square().colwise() * (2.0 * in.terms.curvature.array())).colwise() + in.terms.weight.array();
 }
 
-Eigen::VectorXd weights_of_samples(const WhitenedProblem& problem) {
-  return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
-}
-
 /// G^-1 in covariance.hpp. Zero (no information) if the mean slope of psi is not positive.
 Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Index L = in.problem.samples, n = in.problem.states;
@@ -52,7 +48,7 @@ Eigen::MatrixXd inverse_G(const CovarianceInput& in) {
   const Eigen::MatrixXd psi = r.colwise() * in.terms.weight.array();
   const Eigen::MatrixXd psi_square = psi.transpose().lazyProduct(psi);
   const Eigen::ArrayXXd d = slopes(in);
-  const Eigen::VectorXd w = weights_of_samples(in.problem);
+  const Eigen::VectorXd w = Eigen::VectorXd::Ones(L);
   const Eigen::VectorXd slope = d.matrix().transpose().lazyProduct(w),
                         slope_square = d.square().matrix().transpose().lazyProduct(w);
   if (!(slope.minCoeff() > 0.0)) return Eigen::MatrixXd::Zero(n, n);
@@ -132,7 +128,7 @@ Eigen::MatrixXd theta_covariance(const CovarianceInput& in, CovarianceKind kind)
 
 Eigen::VectorXd weighed_information(const CovarianceInput& in, CovarianceKind kind) {
   const Index n = in.problem.states;
-  const Eigen::VectorXd w = weights_of_samples(in.problem);
+  const Eigen::VectorXd w = Eigen::VectorXd::Ones(in.problem.samples);
   const Eigen::ArrayXd slope = slopes(in).matrix().transpose() * w / static_cast<double>(in.problem.samples);
   if (in.problem.samples <= in.regressors) return slope.max(0.0);
   if (kind == CovarianceKind::sandwich) return Eigen::VectorXd::Constant(n, not_a_number);

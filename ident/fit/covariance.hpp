@@ -28,9 +28,7 @@ struct CovarianceInput {
 /// For one state this is K^2 sigma^2 [sum psi^2 / (L - f)] / [mean psi']^2 (X'X)^-1 with the prior's information added.
 /// K is Huber's correction for few samples (1981, eqs. 7.6.3 and 7.6.7); without this correction 95 % regions at L = 25
 /// contain the truth in 93.7 % of the windows instead of 94.5 %. For several states, block (i, j) is sigma_i sigma_j
-/// G_ij (X'X)^-1. G's diagonal has the same floor as sigma. A singular G (L - q < n) is replaced by its diagonal. With
-/// sample weights, means and variances over samples are weighted. A trivial loss then gives weighted least squares with
-/// noise variances inverse to the weights.
+/// G_ij (X'X)^-1. G's diagonal has the same floor as sigma. A singular G (L - q < n) is replaced by its diagonal.
 ///
 /// `sandwich`: H^-1 (sum J_k' e_k e_k' J_k + P) H^-1, HC3 (MacKinnon & White 1985) for M-estimators. e_k = (I - h_k)^-1
 /// psi_k, h_k = psi'_k J_k H^-1 J_k' is the leverage block, and H the second derivative of the objective. The prior's

@@ -26,11 +26,7 @@ Eigen::VectorXd information(const Eigen::MatrixXd& covariance, const ParameterPr
   return 1.0 - covariance.diagonal().array() / prior->sd.array().square();
 }
 
-Eigen::VectorXd sample_weights(const WhitenedProblem& problem) {
-  return problem.weight.size() > 0 ? problem.weight : Eigen::VectorXd::Ones(problem.samples);
-}
-
-/// Residuals of state i in units of sigma, each times the square root of its sample weight.
+/// Residuals of state i in units of sigma.
 auto residuals_of(const WhitenedProblem& problem, const RobustTerms& terms, Index i) {
   using Strided = Eigen::Map<const Eigen::VectorXd, 0, Eigen::InnerStride<>>;
   return Strided(terms.residual.data() + i, problem.samples, Eigen::InnerStride<>(problem.states));
@@ -40,14 +36,12 @@ auto residuals_of(const WhitenedProblem& problem, const RobustTerms& terms, Inde
 
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma) {
-  const Eigen::ArrayXd root = sample_weights(problem).cwiseSqrt();  // the rows already contain the square root of the
-                                                                    // weight
   const Eigen::ArrayXd omega = terms.weight;
   Eigen::VectorXd result(problem.states);
   for (Index i = 0; i < problem.states; ++i) {
     const Eigen::ArrayXd d = transitions.increments.col(i);
-    const double mean = (omega * root * d).sum() / (omega * root.square()).sum();
-    const double total = (omega * (d - mean * root).square()).sum();
+    const double mean = (omega * d).sum() / omega.sum();
+    const double total = (omega * (d - mean).square()).sum();
     const double left = (omega * residuals_of(problem, terms, i).array().square()).sum() * sigma(i) * sigma(i);
     result(i) = total > 0.0 ? 1.0 - left / total : not_a_number;
   }

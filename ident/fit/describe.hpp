@@ -25,14 +25,13 @@ struct SolvedWindow {
 LocalModel describe_fit(const SolvedWindow& solved, const Eigen::VectorXd& theta);
 
 /// Measures that show how well a fit explains a window, from its problem and the terms at the optimum. For sample k:
-/// omega_k is the robust weight, w_k the sample weight, d_k the increment and e_k the residual, both in the state's
-/// unit.
+/// omega_k is the robust weight, d_k the increment and e_k the residual, both in the state's unit.
 
 /// R^2 of the increments x[k+1] - x[k], n entries. (A model that only repeats x[k] would explain the states nearly
-/// fully.) R^2 = 1 - sum omega w e^2 / sum omega w (d - mean)^2 with mean = sum omega w d / sum omega w. With weights
+/// fully.) R^2 = 1 - sum omega e^2 / sum omega (d - mean)^2 with mean = sum omega d / sum omega. With weights
 /// in both sums, R^2 describes the samples that the fit follows (Willett & Singer 1988, The American Statistician 42).
-/// For a trivial loss R^2 is the usual R^2 about the mean (statsmodels' 1 - ssr / centered_tss), also for weighted
-/// least squares. It may be negative without an intercept or with a prior. NaN for constant increments.
+/// For a trivial loss R^2 is the usual R^2 about the mean (statsmodels' 1 - ssr / centered_tss). It may be negative
+/// without an intercept or with a prior. NaN for constant increments.
 Eigen::VectorXd r_squared(const Transitions& transitions, const WhitenedProblem& problem, const RobustTerms& terms,
                           const Eigen::VectorXd& sigma);
 

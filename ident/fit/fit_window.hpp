@@ -17,11 +17,6 @@ namespace modebank {
 /// ignored; L is the number of the other transitions. Rank deficiency is a status instead of an exception, and takes
 /// precedence over iteration_limit. The status is `failed` (theta NaN) if no transition remains or numbers overflow.
 ///
-/// Sample weights w_k (Trajectory::weight) multiply the losses: the fit minimises sum w_k rho(|r_k|^2). Weights are
-/// divided by their mean over the window. So a common factor has no effect, even with a prior. With least squares, the
-/// noise variance of transition k is noise_variance / w_k, as in statsmodels' WLS. rank and condition are those of the
-/// regressors times sqrt(w_k). robust_scale uses weighted medians.
-///
 /// noise_variance: sigma^2 sum w_k r_k^2 / [(L - rank) kappa] with the robust weight w_k = rho' and the rank of one
 /// state's regressors. kappa = E[w z^2] for Gaussian z makes it consistent for the variance of Gaussian noise. For L <=
 /// q: sum of squared residuals about the posterior / L. The lower bound is the square of `sigma_floor` (n entries, or

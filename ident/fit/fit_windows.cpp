@@ -211,6 +211,8 @@ void check_model(const FitOptions& options, Index states, Index inputs) {
   if (!options.input_delay.fits(inputs))
     throw ConfigurationError("input_delay takes one number, or one for each of the " + std::to_string(inputs) +
                              " inputs");
+  if (!options.centre.empty() && (!options.intercept || std::ssize(options.centre) != states + inputs))
+    throw ConfigurationError("centre takes one number for each state and input, and an intercept");
   motion_model(options, states, inputs);
 }
 

@@ -111,6 +111,7 @@ bool needs_constant(const Recording& recording, LinearStructure structure) {
   if (reduce(recording, structure).second < rows_per_column * structure.regressors()) return false;
   const GlobalModel with = fit_global(recording, structure);
   structure.intercept = false;
+  structure.centre.clear();
   const GlobalModel without = fit_global(recording, structure);
   const auto log_determinant = [](const GlobalModel& fit) { return std::log(fit.residual_covariance.determinant()); };
   return static_cast<double>(with.transitions) / 2.0 * (log_determinant(without) - log_determinant(with)) >= least_gain;

@@ -8,8 +8,7 @@
 namespace modebank {
 
 /// Ordinary least squares over all transitions of the training runs. Throws DataError without transitions.
-/// Rank-deficient regressors give the minimum-norm solution. With sample weights the fit is weighted least squares, and
-/// N is the number of transitions of positive weight.
+/// Rank-deficient regressors give the minimum-norm solution.
 GlobalModel fit_global(const Recording& recording, const LinearStructure& structure);
 
 /// Least squares of one-step residuals over all training transitions, from the model's start values. Several states are

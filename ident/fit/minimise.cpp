@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "ident/base/linalg.hpp"
 #include "ident/fit/constants.hpp"
@@ -68,11 +67,7 @@ FitStatus search(const WhitenedProblem& problem, const RobustLoss& loss, const T
     // Ceres owns this block
     ceres_problem.AddResidualBlock(new LinearResidual(problem, first, count), function, z.data());
   };
-  std::vector<WeightedLoss> weighted;
-  for (const double weight : problem.weight) weighted.emplace_back(*loss.ceres_function(), weight);
-  for (Index k = 0; k < problem.samples; ++k)
-    add(k * problem.states, problem.states,
-        weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < problem.samples; ++k) add(k * problem.states, problem.states, loss.ceres_function());
   if (problem.prior_rows() > 0) add(problem.sample_rows(), problem.prior_rows(), nullptr);
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(tolerances, max_iterations), &ceres_problem, &summary);
@@ -141,20 +136,16 @@ RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, con
 RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual) {
   RobustTerms terms{std::move(residual), Eigen::VectorXd(problem.samples), Eigen::VectorXd(problem.samples)};
   for (Index k = 0; k < problem.samples; ++k) {
-    const double sample_weight = problem.sample_weight(k);
-    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm() / sample_weight);
+    const LossValue value = loss(terms.sample(k, problem.states).squaredNorm());
     terms.weight(k) = value.weight;
-    terms.curvature(k) = value.curvature / sample_weight;
+    terms.curvature(k) = value.curvature;
   }
   return terms;
 }
 
 double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms) {
   double sum = terms.residual.tail(problem.prior_rows()).squaredNorm();
-  for (Index k = 0; k < problem.samples; ++k) {
-    const double w = problem.sample_weight(k);
-    sum += w * loss(terms.sample(k, problem.states).squaredNorm() / w).rho;
-  }
+  for (Index k = 0; k < problem.samples; ++k) sum += loss(terms.sample(k, problem.states).squaredNorm()).rho;
   return 0.5 * sum;
 }
 

@@ -8,12 +8,11 @@
 namespace modebank {
 
 /// Residuals of a whitened problem at z, and the derivatives of the loss. psi_k = weight_k r_k is the influence of
-/// sample k (Huber 1981). For a sample of weight w all values refer to its rows, which contain sqrt(w): r_k is sqrt(w)
-/// times the residual of the sample.
+/// sample k (Huber 1981).
 struct RobustTerms {
   Eigen::VectorXd residual;   ///< b - J z, all rows
-  Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2 / w)
-  Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2 / w) / w
+  Eigen::VectorXd weight;     ///< L, rho'(|r_k|^2)
+  Eigen::VectorXd curvature;  ///< L, rho''(|r_k|^2)
 
   auto sample(Index k, Index states) const { return residual.segment(k * states, states); }
   /// Residuals of the samples, L x n.
@@ -29,7 +28,7 @@ RobustTerms evaluate(const WhitenedProblem& problem, const RobustLoss& loss, con
 /// RobustTerms for given residuals (all rows).
 RobustTerms evaluate_at(const WhitenedProblem& problem, const RobustLoss& loss, Eigen::VectorXd residual);
 
-/// The objective 1/2 sum w rho(|r_k|^2 / w) + 1/2 |prior rows|^2.
+/// The objective 1/2 sum rho(|r_k|^2) + 1/2 |prior rows|^2.
 double half_cost(const WhitenedProblem& problem, const RobustLoss& loss, const RobustTerms& terms);
 /// Gradient of half_cost with respect to z.
 Eigen::VectorXd gradient(const WhitenedProblem& problem, const RobustTerms& terms);

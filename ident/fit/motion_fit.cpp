@@ -106,8 +106,6 @@ FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& s
   problem_options.loss_function_ownership = ceres::DO_NOT_TAKE_OWNERSHIP;  // one object for all samples, windows and
                                                                            // threads
   problem_options.disable_all_safety_checks = true;
-  std::vector<WeightedLoss> weighted;
-  for (const double weight : residuals.weights()) weighted.emplace_back(*loss.ceres_function(), weight);
   ceres::Problem problem(problem_options);
   const auto add = [&](Index first, Index count, ceres::LossFunction* function) {  // Ceres owns the cost function
     problem.AddResidualBlock(new SampleResidual(residuals, sigma, first, count), function, theta.data());
@@ -115,8 +113,7 @@ FitStatus ceres_search(const ModelResiduals& residuals, const Eigen::VectorXd& s
   if (loss.kind() == Loss::trivial)
     add(0, residuals.samples(), nullptr);
   else
-    for (Index k = 0; k < residuals.samples(); ++k)
-      add(k, 1, weighted.empty() ? loss.ceres_function() : &weighted[static_cast<std::size_t>(k)]);
+    for (Index k = 0; k < residuals.samples(); ++k) add(k, 1, loss.ceres_function());
   if (prior) problem.AddResidualBlock(new PriorResidual(*prior), nullptr, theta.data());
   set_bounds(residuals.model(), problem, theta);
   ceres::Solver::Summary summary;
@@ -134,7 +131,7 @@ Eigen::VectorXd within_bounds(const MotionModel& model, Eigen::VectorXd theta) {
   return theta;
 }
 
-/// Residuals and derivatives of a fit at its solution, in units of sigma, times the square roots of the sample weights.
+/// Residuals and derivatives of a fit at its solution, in units of sigma.
 struct LinearisedFit {
   Eigen::VectorXd r;
   RowMajorJacobian J;
@@ -145,14 +142,12 @@ LinearisedFit linearise(const ModelResiduals& residuals, const Eigen::VectorXd& 
   residuals.evaluate(at.data(), fit.r, &fit.J);
   const Index n = residuals.states(), u = fit.J.cols();
   double *r = fit.r.data(), *J = fit.J.data();
-  for (Index k = 0; k < residuals.samples(); ++k) {
-    const double root_weight = std::sqrt(residuals.weight(k));
+  for (Index k = 0; k < residuals.samples(); ++k)
     for (Index i = 0; i < n; ++i) {
-      const double scale = root_weight / sigma(i);
+      const double scale = 1.0 / sigma(i);
       *r++ *= scale;
       for (Index j = 0; j < u; ++j) *J++ *= scale;
     }
-  }
   return fit;
 }
 
@@ -164,7 +159,6 @@ WhitenedProblem whiten_at(const LinearisedFit& fit, const ModelResiduals& residu
   problem.samples = residuals.samples();
   problem.states = residuals.states();
   problem.origin = at;
-  problem.weight = residuals.weights();
   problem.b = Eigen::VectorXd(rows + p);
   problem.b.head(rows) = fit.r;
   if (!prior) {
@@ -212,7 +206,7 @@ LocalModel fit_model(const ModelResiduals& residuals, const ModelEstimator& esti
   const Decomposition excitation = decompose(at_solution.J, excitation_tolerance);
   const WhitenedProblem problem = whiten_at(at_solution, residuals, minimum.theta, excitation, prior);
   const RobustTerms terms = evaluate(problem, estimator.loss, Eigen::VectorXd::Zero(problem.unknowns()));
-  const Transitions responses{{}, residuals.responses(), residuals.weights()};
+  const Transitions responses{{}, residuals.responses()};
   const NoiseScale scale{sigma, floor};
   const auto states = static_cast<double>(n);
   LocalModel fit = describe_fit({.problem = problem,

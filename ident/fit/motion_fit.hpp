@@ -26,8 +26,8 @@ struct ModelMinimum {
 };
 
 /// Minimises 1/2 sum w_k rho(|r_k / sigma|^2) + 1/2 |(theta - m) / sd|^2 by Ceres. The search begins at `start` and
-/// stays within the bounds of the parameters. w_k are the sample weights of `residuals`. For non-convex losses the
-/// search starts from the Huber optimum. `sigma` has n positive entries; `prior` may be null.
+/// stays within the bounds of the parameters. w_k are the weights of `residuals`, all 1 unless the loss is trivial. For
+/// non-convex losses the search starts from the Huber optimum. `sigma` has n positive entries; `prior` may be null.
 ModelMinimum minimise_model(const ModelResiduals& residuals, const Eigen::VectorXd& sigma, const RobustLoss& loss,
                             const ParameterPrior* prior, int max_iterations, const Eigen::VectorXd& start);
 

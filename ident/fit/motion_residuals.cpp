@@ -19,8 +19,6 @@ bool finite_transition(const Trajectory& run, Index k) {
   return finite_sample(run.state, k) && finite_sample(run.state, k + 1) && finite_sample(run.input, k);
 }
 
-double sample_weight(const Trajectory& run, Index k) { return run.weight.size() > 0 ? run.weight(k) : 1.0; }
-
 }  // namespace
 
 std::vector<TransitionRange> training_stretches(const Recording& recording) {
@@ -40,22 +38,13 @@ ModelResiduals::ModelResiduals(const MotionModel& model, const std::vector<Trans
   transitions_.reserve(static_cast<std::size_t>(all));
   for (const TransitionRange& s : stretches)
     for (Index k = s.start; k < s.start + s.length; ++k, ++position) {
-      const double weight = weights.size() > 0 ? weights(position) : sample_weight(*s.run, k + 1);
+      const double weight = weights.size() > 0 ? weights(position) : 1.0;
       if (!finite_transition(*s.run, k) || weight == 0.0) continue;
       kept.push_back(weight);
       transitions_.push_back({s.run->state.col(k).data(), s.run->input.col(k).data(), s.run->state.col(k + 1).data(),
                               period_s(*s.run, k)});
     }
-  if (weights.size() > 0)
-    weights_ = Eigen::Map<const Eigen::VectorXd>(kept.data(), samples());
-  else
-    take_run_weights(kept);
-}
-
-void ModelResiduals::take_run_weights(const std::vector<double>& weights) {
-  if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 1.0; })) return;
-  weights_ = Eigen::Map<const Eigen::VectorXd>(weights.data(), samples());
-  weights_ /= weights_.mean();
+  if (weights.size() > 0) weights_ = Eigen::Map<const Eigen::VectorXd>(kept.data(), samples());
 }
 
 Eigen::MatrixXd ModelResiduals::responses() const {
@@ -65,7 +54,6 @@ Eigen::MatrixXd ModelResiduals::responses() const {
     const Eigen::Map<const Eigen::RowVectorXd> from(t.x, states()), to(t.next, states());
     rows.row(row++) = to - from;
   }
-  if (weights_.size() > 0) rows.array().colwise() *= weights_.array().sqrt();
   return rows;
 }
 

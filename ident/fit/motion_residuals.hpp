@@ -25,9 +25,8 @@ using RowMajorJacobian = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, E
 /// to model and runs, which must outlive it.
 class ModelResiduals {
  public:
-  /// `weights` are factors of each transition's loss, in the order of the stretches. If `weights` is empty, the runs'
-  /// sample weights divided by their mean are used, or 1 if the runs have no weights. Samples of weight zero are
-  /// skipped.
+  /// `weights` are factors of each transition's square, in the order of the stretches; only minimise_model with least
+  /// squares takes them. If `weights` is empty, all are 1. Samples of weight zero are skipped.
   ModelResiduals(const MotionModel& model, const std::vector<TransitionRange>& stretches,
                  const Eigen::VectorXd& weights = {});
 
@@ -37,9 +36,8 @@ class ModelResiduals {
   Index rows() const { return samples() * states(); }
   Index unknowns() const { return model_.parameter_count(); }
   double weight(Index sample) const { return weights_.size() > 0 ? weights_(sample) : 1.0; }
-  const Eigen::VectorXd& weights() const { return weights_; }  ///< weights of the samples; empty if all weights are one
 
-  /// Increments that the model should explain, one row per sample, times the square root of its weight.
+  /// Increments that the model should explain, one row per sample.
   Eigen::MatrixXd responses() const;
 
   /// Computes r (rows). If the second pointer is not null, also computes the derivatives of the predictions with
@@ -50,8 +48,6 @@ class ModelResiduals {
   void evaluate(const double* theta, Index first, Index count, double* r, double* J) const;
 
  private:
-  void take_run_weights(const std::vector<double>& weights);
-
   const MotionModel& model_;
   std::vector<MotionModel::Transition> transitions_;  ///< the finite transitions of the stretches
   Eigen::VectorXd weights_;                           ///< one weight per finite transition; empty without weights

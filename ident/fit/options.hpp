@@ -14,8 +14,8 @@ inline bool is_linear(const FitOptions& options) { return options.model == "line
 /// linearisations, with an intercept.
 inline LinearStructure linear_structure(Index states, Index inputs, const FitOptions& o) {
   const InputDelays delay = inputs > 0 ? o.input_delay : InputDelays();
-  if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, delay};
-  return {states, inputs, is_linear(o) ? o.intercept : true};
+  if (o.model == "varx") return {states, inputs, o.intercept, o.state_lags, o.input_lags, delay, o.centre};
+  return {states, inputs, is_linear(o) ? o.intercept : true, 1, 1, 1, o.centre};
 }
 
 }  // namespace modebank

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <ceres/cost_function.h>
-#include <ceres/loss_function.h>
 
 #include <Eigen/Core>
 
@@ -30,23 +29,6 @@ class LinearResidual final : public ceres::CostFunction {
  private:
   const WhitenedProblem* problem_;
   Index first_;
-};
-
-/// w rho(s / w): the loss of a sample whose rows contain the square root of its weight w. The wrapped loss must outlive
-/// this object.
-class WeightedLoss final : public ceres::LossFunction {
- public:
-  WeightedLoss(const ceres::LossFunction& loss, double weight) : loss_(&loss), weight_(weight) {}
-
-  void Evaluate(double s, double rho[3]) const override {
-    loss_->Evaluate(s / weight_, rho);
-    rho[0] *= weight_;
-    rho[2] /= weight_;
-  }
-
- private:
-  const ceres::LossFunction* loss_;
-  double weight_;
 };
 
 }  // namespace modebank

@@ -27,12 +27,7 @@ constexpr int max_iterations = 1000;
 
 double uncentred_scale(const VectorXd& residuals) { return median(residuals.cwiseAbs()) / normal_third_quartile; }
 
-Transitions one_response(const Transitions& all, Index i) {
-  Transitions one = all;
-  one.increments = all.increments.col(i);
-  one.weight.resize(0);  // rows are not weighted
-  return one;
-}
+Transitions one_response(const Transitions& all, Index i) { return {all.regressors, all.increments.col(i)}; }
 
 struct ResponseFit {
   VectorXd coefficients;    // q

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
-#include <vector>
 
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/constants.hpp"
@@ -28,46 +26,16 @@ double normalised_mad(const Eigen::VectorXd& values) {
   return mad_to_sd * median((values.array() - median(values)).abs());
 }
 
-namespace {
-
-/// Smallest value at which the cumulative weight reaches half of the total. If it is exactly half, the mean of this
-/// value and the next larger value.
-double weighted_median(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
-  std::vector<Index> order(static_cast<std::size_t>(values.size()));
-  std::iota(order.begin(), order.end(), Index{0});
-  std::sort(order.begin(), order.end(), [&](Index a, Index b) { return values(a) < values(b); });
-  constexpr double rounding = 1e-12;  // relative, for sums of weights that are equal in exact arithmetic
-  const double half = 0.5 * weights.sum();
-  double below = 0.0;
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    below += weights(order[i]);
-    if (below < half * (1.0 - rounding)) continue;
-    const bool exact = below <= half * (1.0 + rounding) && i + 1 < order.size();
-    return exact ? 0.5 * (values(order[i]) + values(order[i + 1])) : values(order[i]);
-  }
-  return not_a_number;
-}
-
-}  // namespace
-
-double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights) {
-  const Eigen::VectorXd distance = (values.array() - weighted_median(values, weights)).abs();
-  return mad_to_sd * weighted_median(distance, weights);
-}
-
-Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost) {
+Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, double lost) {
   const auto N = static_cast<double>(r.rows());
   if (!(N > lost)) return Eigen::VectorXd::Constant(r.cols(), not_a_number);
   Eigen::VectorXd scale(r.cols());
-  for (Index i = 0; i < r.cols(); ++i)
-    scale(i) = weights.size() > 0 ? normalised_mad(r.col(i), weights) : normalised_mad(r.col(i));
+  for (Index i = 0; i < r.cols(); ++i) scale(i) = normalised_mad(r.col(i));
   return scale * std::sqrt(N / (N - lost));
 }
 
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition) {
-  Eigen::MatrixXd r = residuals(decomposition, transitions.increments);
-  if (transitions.weight.size() > 0) r.array().colwise() /= transitions.weight.array().sqrt();
-  return robust_scale(r, transitions.weight, static_cast<double>(decomposition.rank()));
+  return robust_scale(residuals(decomposition, transitions.increments), static_cast<double>(decomposition.rank()));
 }
 
 Eigen::VectorXd scale_floor(const Recording& recording, const LinearStructure& structure,

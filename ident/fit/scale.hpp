@@ -11,9 +11,6 @@ double median(Eigen::VectorXd values);  ///< Median: the mean of the two middle 
 /// 1.4826 times the median absolute deviation from the median; consistent for a Gaussian's standard deviation.
 double normalised_mad(const Eigen::VectorXd& values);
 
-/// normalised_mad of a sample in which value i has the weight weights(i) > 0.
-double normalised_mad(const Eigen::VectorXd& values, const Eigen::VectorXd& weights);
-
 /// Residual standard deviations and their lower bounds, n each.
 struct NoiseScale {
   Eigen::VectorXd sigma;
@@ -21,9 +18,8 @@ struct NoiseScale {
 };
 
 /// Residual standard deviation per state: normalised_mad times sqrt(N / (N - lost)). r are least-squares residuals (N x
-/// n), not multiplied by weights. The least-squares fit costs each state `lost` degrees of freedom. The medians are
-/// weighted by the sample weights (N, or empty). NaN if N <= lost.
-Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, const Eigen::VectorXd& weights, double lost);
+/// n). The least-squares fit costs each state `lost` degrees of freedom. NaN if N <= lost.
+Eigen::VectorXd robust_scale(const Eigen::Ref<const Eigen::MatrixXd>& r, double lost);
 
 /// robust_scale of a linear regression.
 Eigen::VectorXd robust_scale(const Transitions& transitions, const Decomposition& decomposition);

@@ -48,7 +48,7 @@ WhitenedProblem whiten(const Transitions& t, const Decomposition& decomposition,
     unknowns += blocks.back().basis.cols();
   }
 
-  WhitenedProblem problem{L, n, {}, {}, {}, prior ? prior->mean : Eigen::VectorXd::Zero(n * q), t.weight};
+  WhitenedProblem problem{L, n, {}, {}, {}, prior ? prior->mean : Eigen::VectorXd::Zero(n * q)};
   const Index rows = L * n + (prior ? n * q : 0);
   problem.J = RowMajorMatrix::Zero(rows, unknowns);
   problem.b = Eigen::VectorXd::Zero(rows);

@@ -13,18 +13,15 @@ using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eig
 /// A window's fit in whitened form: theta = origin + basis z, with residuals r(z) = b - J z in units of sigma (or of
 /// the prior's sd). Rows k n .. k n + n - 1 belong to sample k and share one loss. The rows after the samples belong to
 /// the prior and have quadratic loss. J has orthonormal columns, and z = 0 is the least-squares solution (J'b = 0), in
-/// any units of the data. For a sample of weight w, its rows of J and b are multiplied by sqrt(w). Its loss is w
-/// rho(|r_k|^2 / w), which is w times the loss of its residual.
+/// any units of the data.
 struct WhitenedProblem {
   Index samples = 0;  ///< L
   Index states = 0;   ///< n
   RowMajorMatrix J;
   Eigen::VectorXd b;
-  Eigen::MatrixXd basis;        ///< p rows, one column per unknown z
-  Eigen::VectorXd origin;       ///< p, least-squares theta
-  Eigen::VectorXd weight = {};  ///< L sample weights of mean one; empty if all are one
+  Eigen::MatrixXd basis;   ///< p rows, one column per unknown z
+  Eigen::VectorXd origin;  ///< p, least-squares theta
 
-  double sample_weight(Index k) const { return weight.size() > 0 ? weight(k) : 1.0; }
   Index unknowns() const { return J.cols(); }
   Index sample_rows() const { return samples * states; }
   Index prior_rows() const { return J.rows() - sample_rows(); }

@@ -83,7 +83,7 @@ Eigen::VectorXd MotionWindows::least_squares_scale(const ModelResiduals& residua
   RowMajorJacobian J;
   residuals.evaluate(minimum.theta.data(), r, &J);
   const double lost = static_cast<double>(decompose(J, excitation_tolerance).rank()) / static_cast<double>(n);
-  return robust_scale(r.reshaped(n, residuals.samples()).transpose(), residuals.weights(), lost);
+  return robust_scale(r.reshaped(n, residuals.samples()).transpose(), lost);
 }
 
 Eigen::VectorXd MotionWindows::scale_of(const Trajectory& run) const {

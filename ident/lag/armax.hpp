@@ -64,7 +64,7 @@ struct LinearStageOptions {
 /// nats. Compares ARMAX and ARX structures in levels and in differences on the same rows of left-out runs, below four
 /// runs on stretches, under Student's t. Chooses the fewest parameters within one standard error, 0.001 nats a row, or
 /// 6 nats per state in all, whichever is largest. A model in levels with a pole near 1 that C cancels is differences in
-/// disguise and not chosen. Lags do not reach across gaps, missing samples or transitions of weight 0. Outliers get
+/// disguise and not chosen. Lags do not reach across gaps or missing samples. Outliers get
 /// Huber's weights. The result does not depend on the number of threads.
 LinearStage find_linear_stage(const Recording& recording, const LinearStageOptions& options = {});
 

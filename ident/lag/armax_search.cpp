@@ -35,10 +35,10 @@ constexpr std::array<ArmaxOrder, 12> orders{{{false, 1, 1, 1},
                                              {false, 4, 4, 0},
                                              {false, 8, 8, 0}}};
 
-/// Whether sample k follows sample k - 1: no gap, no missing value, and a transition of positive weight.
+/// Whether sample k follows sample k - 1: no gap, no missing value.
 bool follows(const Trajectory& run, Index k, double period_s) {
-  return run.time_s(k) - run.time_s(k - 1) < 1.5 * period_s && (run.weight.size() == 0 || run.weight(k) > 0.0) &&
-         run.states().col(k).allFinite() && run.inputs().col(k).allFinite();
+  return run.time_s(k) - run.time_s(k - 1) < 1.5 * period_s && run.states().col(k).allFinite() &&
+         run.inputs().col(k).allFinite();
 }
 
 /// Samples first to first + count - 1 of a run.
@@ -193,7 +193,7 @@ ArmaxCandidate candidate(const ArmaxData& data, const ArmaxOrder& order, const D
   result.size = n * (result.fit.theta.cols() + order.noise_lags * n);
   const MatrixXd S = e * e.transpose() / static_cast<double>(data.count), z = Cholesky(S).whiten(e);
   VectorXd density = VectorXd::Constant(data.count, -0.5 * log_determinant(S));
-  for (Index i = 0; i < n; ++i) density += fitted_student_log_density(z.row(i).transpose(), {}, 1e-3);
+  for (Index i = 0; i < n; ++i) density += fitted_student_log_density(z.row(i).transpose(), 1e-3);
   for (std::size_t r = 0; r < data.stretches.size(); ++r)
     result.left_out(data.stretches[r].part) += density.segment(data.begin[r], data.rows[r]).sum();
   if (!result.left_out.allFinite()) result.left_out.setConstant(-1e100);  // errors that grew without bound

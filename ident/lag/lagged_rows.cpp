@@ -10,7 +10,6 @@ namespace modebank {
 namespace {
 
 using Eigen::MatrixXd;
-using Eigen::VectorXd;
 
 constexpr Index most_entries = 4'000'000;
 constexpr Index rows_together = 500;  // number of rows that are kept or dropped together
@@ -29,7 +28,7 @@ LinearStructure widest_of(const Recording& recording, const StructureRanges& ran
   return widest;
 }
 
-/// Finite rows of positive weight, in the order of the runs.
+/// Finite rows, in the order of the runs.
 struct GatheredRows {
   std::vector<Transitions> blocks;
   std::vector<Index> run_of_block;
@@ -52,10 +51,7 @@ GatheredRows gather(const Recording& recording, const LinearStructure& widest) {
       const Transitions stacked = stack_transitions(run, start, count, widest);
       const std::vector<Index> kept = usable_rows(stacked);
       if (kept.empty()) continue;
-      VectorXd weight = VectorXd::Ones(std::ssize(kept));
-      if (stacked.weight.size() > 0) weight = stacked.weight(kept);
-      gathered.blocks.push_back(
-          {stacked.regressors(kept, Eigen::all), stacked.increments(kept, Eigen::all), std::move(weight)});
+      gathered.blocks.push_back({stacked.regressors(kept, Eigen::all), stacked.increments(kept, Eigen::all)});
       gathered.run_of_block.push_back(gathered.runs);
       gathered.rows += std::ssize(kept);
     }
@@ -88,17 +84,14 @@ void transform(LaggedRows& rows) {
 
 void put_rows(const GatheredRows& gathered, const std::vector<Index>& order, Index columns, LaggedRows& rows) {
   MatrixXd X(gathered.rows, columns), Y(gathered.rows, rows.states);
-  VectorXd weight(gathered.rows);
   Index first = 0;
   for (const Transitions& of_block : gathered.blocks) {
     X.middleRows(first, of_block.count()) = of_block.regressors;
     Y.middleRows(first, of_block.count()) = of_block.increments;
-    weight.segment(first, of_block.count()) = of_block.weight;
     first += of_block.count();
   }
   rows.X = X(order, Eigen::all);
   rows.Y = Y(order, Eigen::all);
-  if ((weight.array() != 1.0).any()) rows.weight = weight(order) / weight.mean();
 }
 
 }  // namespace

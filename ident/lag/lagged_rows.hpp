@@ -38,7 +38,6 @@ struct LaggedRows {
   bool intercept = false;
   Eigen::MatrixXd X;              ///< N x q, regressors
   Eigen::MatrixXd Y;              ///< N x n, increments
-  Eigen::VectorXd weight;         ///< N sample weights of mean one; empty if all are one
   std::vector<Index> part;        ///< N, index of the row's run or stretch of a run
   std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
   Index parts = 0;
@@ -47,7 +46,6 @@ struct LaggedRows {
 
   Index count() const { return X.rows(); }
   Index folds() const { return static_cast<Index>(fold_begin.size()) - 1; }
-  double weight_of(Index row) const { return weight.size() > 0 ? weight(row) : 1.0; }
   /// The columns of X that one structure uses.
   std::vector<Index> columns(const LinearStructure& structure) const;
 };

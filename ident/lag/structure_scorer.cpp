@@ -34,10 +34,7 @@ Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& colum
   for (std::size_t j = 0; j < columns.size(); ++j)
     without(rows.X.col(columns[j]), kept.regressors.col(static_cast<Index>(j)));
   without(rows.Y.col(response), kept.increments.col(0));
-  if (rows.weight.size() == 0) return kept;
-  kept.weight = VectorXd(N - count);
-  without(rows.weight, kept.weight.col(0));
-  return finite_rows(kept);
+  return kept;
 }
 
 }  // namespace
@@ -45,17 +42,12 @@ Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& colum
 StructureScorer::StructureScorer(const LaggedRows& rows, const VectorXd& quantum) : rows_(rows) {
   least_scale_ = exact_share * (rows.Y.colwise().squaredNorm() / static_cast<double>(rows.count())).cwiseSqrt();
   for (Index i = 0; i < quantum.size(); ++i) least_scale_(i) = std::max(least_scale_(i), quantum(i) / std::sqrt(12.0));
-  part_weight_ = VectorXd::Zero(rows.parts);
-  for (Index k = 0; k < rows.count(); ++k) part_weight_(rows.part[static_cast<std::size_t>(k)]) += rows.weight_of(k);
+  part_rows_ = VectorXd::Zero(rows.parts);
+  for (Index k = 0; k < rows.count(); ++k) part_rows_(rows.part[static_cast<std::size_t>(k)]) += 1.0;
   for (Index f = 0; f < rows.folds(); ++f) {
     const Index first = rows.fold_begin[static_cast<std::size_t>(f)];
     const Index count = rows.fold_begin[static_cast<std::size_t>(f) + 1] - first;
-    MatrixXd X = rows.X.middleRows(first, count), Y = rows.Y.middleRows(first, count);
-    if (rows.weight.size() > 0) {
-      const VectorXd root = rows.weight.segment(first, count).cwiseSqrt();
-      X.array().colwise() *= root.array();
-      Y.array().colwise() *= root.array();
-    }
+    const MatrixXd X = rows.X.middleRows(first, count), Y = rows.Y.middleRows(first, count);
     gram_.emplace_back(X.transpose() * X);
     cross_.emplace_back(X.transpose() * Y);
   }
@@ -119,15 +111,12 @@ LeftOutForecast StructureScorer::forecast(const MatrixXd& errors) const {
   VectorXd density = VectorXd::Zero(rows_.count());
   for (Index i = 0; i < rows_.states; ++i) {
     const VectorXd of_state = errors.col(i);
-    const double square = rows_.weight.size() > 0 ? of_state.cwiseAbs2().dot(rows_.weight) / rows_.weight.sum()
-                                                  : of_state.squaredNorm() / static_cast<double>(rows_.count());
-    forecast.rmse(i) = std::sqrt(square);
+    forecast.rmse(i) = std::sqrt(of_state.squaredNorm() / static_cast<double>(rows_.count()));
     const double floor = std::max({least_scale_(i), least_share_of_rms * forecast.rmse(i), least_normal_scale});
-    density += fitted_student_log_density(of_state, rows_.weight, floor);
+    density += fitted_student_log_density(of_state, floor);
   }
-  for (Index k = 0; k < rows_.count(); ++k)
-    forecast.of_part(rows_.part[static_cast<std::size_t>(k)]) += rows_.weight_of(k) * density(k);
-  forecast.log_score = forecast.of_part.sum() / part_weight_.sum();
+  for (Index k = 0; k < rows_.count(); ++k) forecast.of_part(rows_.part[static_cast<std::size_t>(k)]) += density(k);
+  forecast.log_score = forecast.of_part.sum() / part_rows_.sum();
   return forecast;
 }
 

@@ -30,13 +30,13 @@ class StructureScorer {
 
   /// Least-squares errors of the left-out rows, N x n.
   Eigen::MatrixXd least_squares_errors(const LinearStructure& structure) const;
-  /// Total sample weight (or number of rows) of each part.
-  const Eigen::VectorXd& part_weight() const { return part_weight_; }
+  /// Number of rows of each part.
+  const Eigen::VectorXd& part_rows() const { return part_rows_; }
 
  private:
   const LaggedRows& rows_;
   Eigen::VectorXd least_scale_;         ///< n
-  Eigen::VectorXd part_weight_;         ///< parts
+  Eigen::VectorXd part_rows_;           ///< parts
   std::vector<Eigen::MatrixXd> gram_;   ///< X'X of the rows outside each fold
   std::vector<Eigen::MatrixXd> cross_;  ///< X'Y of the rows outside each fold
 

@@ -151,7 +151,7 @@ void explore(StructureClimb& search, const Lags* another) {
 /// The limits of a wider search. A limit is raised if the best structure lies at the limit and the limit may be raised.
 /// The other limits stay.
 Lags moved_ends(const StructureClimb& search, const SearchedLags& searched, const Lags& most) {
-  const Lags at = best_with_delay_rule(search.seen(), search.scorer().part_weight());
+  const Lags at = best_with_delay_rule(search.seen(), search.scorer().part_rows());
   const bool acted_on = search.rows().inputs > 0;
   const std::array<bool, 3> free{searched.state, searched.input && acted_on, searched.delay && acted_on};
   Lags moved = most;
@@ -173,7 +173,7 @@ ScoredStructures polish(const StructureClimb& search, const std::vector<Lags>& c
 
 FoundStructure settle(const StructureClimb& search, const FitOptions& window) {
   const StructureSize size{search.rows().states, search.rows().inputs};
-  const Eigen::VectorXd& weight = search.scorer().part_weight();
+  const Eigen::VectorXd& weight = search.scorer().part_rows();
   const ScoredStructures late = select(search.seen(), &acts_later), at_once = select(search.seen(), &acts_at_once);
   ScoredStructures polished = polish(search, finalists_of(late, size, weight, finalists), window);
   if (!at_once.empty() && (late.empty() || gains_enough(at_once, late, weight))) {
@@ -244,7 +244,7 @@ FoundStructure find_structure(const Recording& recording, const FitOptions& wind
       remark = cut_remark(most);
       break;
     }
-    const Lags best = best_with_delay_rule(search->seen(), search->scorer().part_weight());
+    const Lags best = best_with_delay_rule(search->seen(), search->scorer().part_rows());
     most = moved;
     search = std::make_unique<StructureClimb>(std::move(wider), recording.quantum);
     explore(*search, &best);

@@ -18,16 +18,12 @@ constexpr std::array degrees_tried{2.0, 4.0, 8.0, 30.0, 1000.0};
 constexpr int most_steps = 100;
 constexpr double tolerance = 1e-9;  // relative tolerance of the squared scale
 
-double weighted_mean(const ArrayXd& values, const VectorXd& weight) {
-  return weight.size() > 0 ? (values * weight.array()).sum() / weight.sum() : values.mean();
-}
-
 /// Maximum-likelihood squared scale, by expectation-maximisation with an expanded parameter (Liu, Rubin & Wu 1998).
-double fitted_square(const ArrayXd& squares, const VectorXd& weight, double degrees, double start, double least) {
+double fitted_square(const ArrayXd& squares, double degrees, double start, double least) {
   double s = start;
   for (int step = 0; step < most_steps; ++step) {
     const ArrayXd precision = (degrees + squares / s).inverse();
-    const double next = std::max(weighted_mean(precision * squares, weight) / weighted_mean(precision, weight), least);
+    const double next = std::max((precision * squares).mean() / precision.mean(), least);
     const bool settled = std::abs(next - s) <= tolerance * s;
     s = next;
     if (settled) break;
@@ -43,7 +39,7 @@ ArrayXd log_density(const ArrayXd& squares, double degrees, double s) {
 
 }  // namespace
 
-VectorXd fitted_student_log_density(const VectorXd& errors, const VectorXd& weight, double floor) {
+VectorXd fitted_student_log_density(const VectorXd& errors, double floor) {
   const ArrayXd squares = errors.array().square();
   const double least = floor * floor;
   const double robust = mad_to_sd * median(errors.cwiseAbs());
@@ -51,9 +47,9 @@ VectorXd fitted_student_log_density(const VectorXd& errors, const VectorXd& weig
   ArrayXd best;
   double most = 0.0;
   for (const double degrees : degrees_tried) {
-    s = fitted_square(squares, weight, degrees, s, least);
+    s = fitted_square(squares, degrees, s, least);
     ArrayXd density = log_density(squares, degrees, s);
-    const double mean = weighted_mean(density, weight);
+    const double mean = density.mean();
     if (best.size() > 0 && !(mean > most)) continue;
     most = mean;
     best = std::move(density);

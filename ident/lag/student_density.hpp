@@ -6,8 +6,7 @@ namespace modebank {
 
 /// Log density of each error under the best-fitting Student t, so that outliers have little influence. For each of 2,
 /// 4, 8, 30 and 1000 degrees of freedom, the scale of maximum likelihood is computed. The most likely of these five
-/// distributions is used. `weight`: N weights of the errors, or empty. `floor`: smallest scale [unit of the errors],
-/// above 0. Errors must be finite.
-Eigen::VectorXd fitted_student_log_density(const Eigen::VectorXd& errors, const Eigen::VectorXd& weight, double floor);
+/// distributions is used. `floor`: smallest scale [unit of the errors], above 0. Errors must be finite.
+Eigen::VectorXd fitted_student_log_density(const Eigen::VectorXd& errors, double floor);
 
 }  // namespace modebank

@@ -37,6 +37,12 @@ std::vector<std::string> LinearStructure::parameter_names() const {
   return names;
 }
 
+Eigen::VectorXd LinearStructure::acting_centre() const {
+  Eigen::VectorXd all = Eigen::VectorXd::Zero(dimension() + acting_inputs());
+  for (Eigen::Index j = 0; !centre.empty() && j < all.size(); ++j) all(j) = centre_of(j);
+  return all;
+}
+
 LinearModel unpack(const LinearStructure& s, const Eigen::VectorXd& theta) {
   assert(theta.size() == s.parameters());
   const Eigen::Index n = s.dimension();
@@ -46,6 +52,7 @@ LinearModel unpack(const LinearStructure& s, const Eigen::VectorXd& theta) {
   fill_companion_rows(s, model.A);
   model.B.topRows(s.states) = rows.middleCols(n, s.acting_inputs());
   if (s.intercept) model.c.head(s.states) = rows.rightCols(1);
+  if (!s.centre.empty()) model.c.head(s.states) -= rows.leftCols(n + s.acting_inputs()) * s.acting_centre();
   return model;
 }
 
@@ -54,6 +61,7 @@ Eigen::VectorXd pack(const LinearStructure& s, const LinearModel& model) {
   rows.leftCols(s.dimension()) = model.A.topRows(s.states);
   rows.middleCols(s.dimension(), s.acting_inputs()) = model.B.topRows(s.states);
   if (s.intercept) rows.rightCols(1) = model.c.head(s.states);
+  if (!s.centre.empty()) rows.rightCols(1) += rows.leftCols(s.regressors() - 1) * s.acting_centre();
   return Eigen::Map<const Eigen::VectorXd>(rows.data(), rows.size());
 }
 

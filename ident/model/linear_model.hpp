@@ -17,12 +17,14 @@ namespace modebank {
 ///          states * state_lags. The inputs that act on transition k are v[k] = [u[k+1-d]; u[k-d]; ...]. Each input
 ///          has its own delay d. Fits, filters and simulation all use the equation of this header.
 struct LinearStructure {
-  Eigen::Index states = 1;      ///< measured states
-  Eigen::Index inputs = 0;      ///< input channels
-  bool intercept = false;       ///< whether the constant c is estimated
-  Eigen::Index state_lags = 1;  ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
-  Eigen::Index input_lags = 1;  ///< number of input samples that act on one transition; at least 1
-  InputDelays input_delay = 1;  ///< number of samples from each input to its first effect
+  Eigen::Index states = 1;          ///< measured states
+  Eigen::Index inputs = 0;          ///< input channels
+  bool intercept = false;           ///< whether the constant c is estimated
+  Eigen::Index state_lags = 1;      ///< number of samples x[k], x[k-1], ... that predict x[k+1]; at least 1
+  Eigen::Index input_lags = 1;      ///< number of input samples that act on one transition; at least 1
+  InputDelays input_delay = 1;      ///< number of samples from each input to its first effect
+  std::vector<double> centre = {};  ///< states, then inputs: theta is taken about this point, so that the constant of
+                                    ///< theta is the increment there. Empty: zero. A, B and c of models are not changed
 
   Eigen::Index dimension() const { return states * state_lags; }                                   ///< n, size of z
   Eigen::Index acting_inputs() const { return inputs * input_lags; }                               ///< m, size of v
@@ -32,7 +34,13 @@ struct LinearStructure {
   /// Whether predictions use samples older than the newest one.
   bool has_several_lags() const { return state_lags > 1 || input_lags > 1; }
   /// The same structure with one state lag and one input lag.
-  LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay}; }
+  LinearStructure with_one_lag() const { return {states, inputs, intercept, 1, 1, input_delay, centre}; }
+  /// Entry j of the centre, repeated for the lags of [z; v]. Requires a centre.
+  double centre_of(Eigen::Index j) const {
+    return centre[static_cast<std::size_t>(j < dimension() ? j % states : states + (j - dimension()) % inputs)];
+  }
+  /// The centre of [z; v]; zeros without a centre.
+  Eigen::VectorXd acting_centre() const;
   /// First transition of a run whose regressors all lie inside the run.
   Eigen::Index first_transition() const {
     return std::max<Eigen::Index>({0, state_lags - 1, input_delay.latest() + input_lags - 2});
@@ -43,11 +51,12 @@ struct LinearStructure {
   bool operator==(const LinearStructure&) const = default;
 };
 
-/// phi = [z; v; (1)], the q regressors of one transition.
+/// phi = [z; v; (1)], the q regressors of one transition, z and v about the centre.
 template <class Z, class V, class Phi>
 void fill_regressor(const LinearStructure& s, const Z& z, const V& v, Phi&& phi) {
   phi.head(s.dimension()) = z;
   phi.segment(s.dimension(), s.acting_inputs()) = v;
+  for (Eigen::Index j = 0; !s.centre.empty() && j < z.size() + v.size(); ++j) phi(j) -= s.centre_of(j);
   if (s.intercept) phi(s.regressors() - 1) = typename std::decay_t<Phi>::Scalar(1);
 }
 

@@ -22,7 +22,7 @@ struct LocalModel {
   double inlier_fraction = 0.0;  ///< share of samples that keep at least half of their least-squares weight
   FitStatus status = FitStatus::failed;
   Eigen::VectorXd r_squared;  ///< n; defined in ident/fit/describe.hpp; empty if it was not computed
-  Index transitions = 0;      ///< L, transitions that entered the fit: finite and of positive weight
+  Index transitions = 0;      ///< L, transitions that entered the fit: the finite ones
 
   /// n, information of the data (curvature of the loss over sigma^2), in units of the information in `covariance`. With
   /// this number the prior can be removed from the estimate. NaN without a prior and for a sandwich covariance.
@@ -59,7 +59,7 @@ struct WindowFits {
   Eigen::VectorXi status;               ///< M, FitStatus
   Eigen::MatrixXd r_squared;            ///< n x M
   Eigen::VectorXi transitions;          ///< M
-  Eigen::MatrixXd weighed_information;  ///< n x M; defined in LocalModel; empty if unknown (older archives)
+  Eigen::MatrixXd weighed_information;  ///< n x M; defined in LocalModel
   Eigen::VectorXd prior_sd;             ///< p, standard deviations of the prior; empty without a prior
   GlobalModel global;
   std::vector<char> by_batch;  ///< M, 1 if the batch solver solved the window, else 0; not archived

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 #include <utility>
 #include <vector>
 
@@ -38,6 +37,8 @@ void fill_rows(const Trajectory& run, Index start, Index count, const LinearStru
     for (Index j = 0; j < s.inputs; ++j)
       copy_signal(input, j, start + 1 - s.input_delay[j] - i, count,
                   column(transitions.regressors, s.dimension() + i * s.inputs + j));
+  for (Index j = 0; !s.centre.empty() && j < s.dimension() + s.acting_inputs(); ++j)
+    transitions.regressors.col(j).segment(first, count).array() -= s.centre_of(j);
   if (s.intercept) transitions.regressors.col(s.regressors() - 1).segment(first, count).setOnes();
   for (Index j = 0; j < s.states; ++j) {
     double* const increment = column(transitions.increments, j);
@@ -45,14 +46,6 @@ void fill_rows(const Trajectory& run, Index start, Index count, const LinearStru
     const double* const samples = state.data() + j;
     for (Index k = 0; k < count; ++k) increment[k] -= samples[(start + k) * state.rows()];
   }
-}
-
-/// Weights of transitions start .. start + count - 1. A transition has the weight of its last sample.
-Eigen::VectorXd transition_weights(const Trajectory& run, Index start, Index count) {
-  if (run.weight.size() == 0) return {};
-  if (run.weight.size() != run.samples() || !(run.weight.array() >= 0.0).all() || !run.weight.allFinite())
-    throw std::invalid_argument("run '" + run.run + "' needs one finite nonnegative weight per sample");
-  return run.weight.segment(start + 1, count);
 }
 
 Transitions allocate(Index count, const LinearStructure& structure) {
@@ -107,7 +100,6 @@ Eigen::MatrixXd basis_of(const Eigen::VectorXd& scales, const Eigen::MatrixXd& V
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure) {
   Transitions transitions = allocate(count, structure);
   fill_rows(run, start, count, structure, 0, transitions);
-  transitions.weight = transition_weights(run, start, count);
   return transitions;
 }
 
@@ -119,49 +111,29 @@ void fill_transitions(const Trajectory& run, Index start, Index count, const Lin
 std::vector<Index> usable_rows(const Transitions& transitions) {
   std::vector<Index> rows;
   for (Index k = 0; k < transitions.count(); ++k)
-    if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite() &&
-        !(transitions.weight.size() > 0 && transitions.weight(k) == 0.0))
-      rows.push_back(k);
+    if (transitions.regressors.row(k).allFinite() && transitions.increments.row(k).allFinite()) rows.push_back(k);
   return rows;
 }
 
 Transitions finite_rows(const Transitions& transitions) {
   const std::vector<Index> rows = usable_rows(transitions);
-  Transitions kept{transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
-  if (transitions.weight.size() == 0 || rows.empty()) return kept;
-  kept.weight = transitions.weight(rows);
-  kept.weight /= kept.weight.mean();
-  const Eigen::VectorXd root = kept.weight.cwiseSqrt();
-  kept.regressors.array().colwise() *= root.array();
-  kept.increments.array().colwise() *= root.array();
-  return kept;
-}
-
-Transitions unweighted(const Transitions& transitions) {
-  if (transitions.weight.size() == 0) return transitions;
-  const Eigen::VectorXd inverse_root = transitions.weight.cwiseSqrt().cwiseInverse();
-  return {inverse_root.asDiagonal() * transitions.regressors, inverse_root.asDiagonal() * transitions.increments};
+  return {transitions.regressors(rows, Eigen::all), transitions.increments(rows, Eigen::all)};
 }
 
 Transitions stack_training(const Recording& recording, const LinearStructure& structure) {
   Transitions all = allocate(recording.transitions(Role::train), structure);
-  const bool weighted = recording.weighted();
-  if (weighted) all.weight = Eigen::VectorXd::Ones(all.count());
   Index first = 0;
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     fill_rows(run, 0, run.transitions(), structure, first, all);
-    if (run.weight.size() > 0)
-      all.weight.segment(first, run.transitions()) = transition_weights(run, 0, run.transitions());
     first += run.transitions();
   }
-  return all.finite() && !weighted ? all : finite_rows(all);
+  return all.finite() ? all : finite_rows(all);
 }
 
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body) {
   constexpr Index block = 16384;
-  if (recording.weighted()) return body(stack_training(recording, structure));  // weights have mean 1 over all rows
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train) continue;
     for (Index start = 0; start < run.transitions(); start += block) {

@@ -9,12 +9,10 @@
 
 namespace modebank {
 
-/// N transitions as a linear regression, increments = regressors [A B c]' + noise. finite_rows applies sample weights:
-/// it multiplies each row by the square root of its weight. Least squares on the rows is then weighted least squares.
+/// N transitions as a linear regression, increments = regressors [A B c]' + noise.
 struct Transitions {
-  Eigen::MatrixXd regressors;   ///< N x q; row k is phi_k' = [z[k]' v[k]' (1)]
-  Eigen::MatrixXd increments;   ///< N x n; row k is (x[k+1] - x[k])'
-  Eigen::VectorXd weight = {};  ///< N sample weights; empty if all are one
+  Eigen::MatrixXd regressors;  ///< N x q; row k is phi_k' = [z[k]' v[k]' (1)]
+  Eigen::MatrixXd increments;  ///< N x n; row k is (x[k+1] - x[k])'
 
   Index count() const { return regressors.rows(); }
   bool finite() const { return regressors.allFinite() && increments.allFinite(); }
@@ -23,22 +21,17 @@ struct Transitions {
 /// The indices of the rows that finite_rows keeps.
 std::vector<Eigen::Index> usable_rows(const Transitions& transitions);
 
-/// Stacks transitions start .. start + count - 1 of a run, without applying weights. Regressors before the start of the
-/// run are NaN. Throws std::invalid_argument unless weights are one per sample, finite and nonnegative.
+/// Stacks transitions start .. start + count - 1 of a run. Regressors before the start of the run are NaN.
 Transitions stack_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure);
 /// Like stack_transitions, but writes into the first `count` rows of an object that is large enough. Does not allocate.
 void fill_transitions(const Trajectory& run, Index start, Index count, const LinearStructure& structure,
                       Transitions& transitions);
 /// finite_rows of all transitions of the training runs.
 Transitions stack_training(const Recording& recording, const LinearStructure& structure);
-/// The rows with finite entries and nonzero weight. Their L weights are scaled to mean one. Each row is then multiplied
-/// by the square root of its weight.
+/// The rows with finite entries.
 Transitions finite_rows(const Transitions& transitions);
-/// Undoes the weighting by finite_rows.
-Transitions unweighted(const Transitions& transitions);
 
-/// Visits the transitions of the training runs in order, in blocks of bounded size. Weighted transitions come in one
-/// block.
+/// Visits the transitions of the training runs in order, in blocks of bounded size.
 void for_each_training_block(const Recording& recording, const LinearStructure& structure,
                              const std::function<void(const Transitions&)>& body);
 

@@ -156,7 +156,7 @@ VectorXd student_densities(const MatrixXd& errors) {
   VectorXd density = VectorXd::Zero(errors.rows());
   for (Index i = 0; i < errors.cols(); ++i) {
     const double rms = std::sqrt(errors.col(i).squaredNorm() / static_cast<double>(errors.rows()));
-    density += fitted_student_log_density(errors.col(i), VectorXd(), std::max(1e-3 * rms, least_scale));
+    density += fitted_student_log_density(errors.col(i), std::max(1e-3 * rms, least_scale));
   }
   return density;
 }

@@ -28,7 +28,6 @@ RunRegression rows_of(const Trajectory& run, const LinearStructure& widest, Inde
   Index count = 0;
   for (Index start = 0; start < run.transitions(); start += rows_together * stride) {
     blocks.push_back(stack_transitions(run, start, std::min(rows_together, run.transitions() - start), widest));
-    blocks.back().weight.resize(0);
     kept.push_back(usable_rows(blocks.back()));
     count += std::ssize(kept.back());
   }

@@ -25,12 +25,12 @@ namespace modebank::layout {
 /// - residual_covariance: covariance of the model's residuals
 template <class Io, class G>
 void exchange_global(Io& io, G& global, const Unit& parameters, const Unit& states) {
-  io.attribute("transitions", global.transitions, rule::count_of("samples"));
-  io.field("parameters", global.theta, {"p"}, parameters, rule::finite_or_missing);
-  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters), rule::computed_covariances);
-  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states), rule::computed_covariances);
+  io.attribute("transitions", global.transitions);
+  io.field("parameters", global.theta, {"p"}, parameters);
+  io.field("covariance", global.covariance, {"p", "p"}, outer(parameters));
+  io.field("residual_covariance", global.residual_covariance, {"n", "n"}, outer(states));
   const Eigen::VectorXd noise_variance = Io::reads ? Eigen::VectorXd() : global.noise_variance();
-  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states), rule::not_negative_or_missing);
+  io.derived_field("noise_variance", noise_variance, {"n"}, squared(states));
 }
 
 inline Unit window_units(const WindowFits& fits, const Units& units) {
@@ -72,35 +72,33 @@ void exchange_windows(Io& io, W& fits, const Recording& recording, const Units& 
         io.field("start", stored.start, {"M"}, {}, rule::not_negative);
       });
   io.field("parameters", fits.parameters, {"M", "p"}, parameters);
-  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters), rule::computed_covariances);
-  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()), rule::not_negative_or_missing);
-  io.field("condition", fits.condition, {"M"}, {}, rule::not_negative_or_missing);
-  io.field("rank", fits.rank, {"M"}, {}, rule::count_of("p"));
+  io.field("covariance", fits.covariance, {"M", "p", "p"}, outer(parameters));
+  io.field("noise_variance", fits.noise_variance, {"M", "n"}, squared(units.states()));
+  io.field("condition", fits.condition, {"M"});
+  io.field("rank", fits.rank, {"M"});
   io.field("information", fits.information, {"M", "p"});
-  io.field("inlier_fraction", fits.inlier_fraction, {"M"}, {}, rule::share_or_missing);
+  io.field("inlier_fraction", fits.inlier_fraction, {"M"});
   io.field("status", fits.status, {"M"}, {}, rule::between(0, static_cast<int>(FitStatus::failed)));
-  io.optional_field("r_squared", fits.r_squared, {"M", "n"}, {}, rule::at_most_one);
+  io.optional_field("r_squared", fits.r_squared, {"M", "n"});
   io.optional_field("transitions", fits.transitions, {"M"}, {}, rule::between(0.0, static_cast<double>(fits.length)));
   io.optional_field("weighed_information", fits.weighed_information, {"M", "n"});
   io.optional_derived_field(
-      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters, rule::not_negative_or_missing);
+      "standard_error", [&] { return fits.standard_errors(); }, {"M", "p"}, parameters);
   io.optional_derived_field("t_value", [&] { return fits.t_values(); }, {"M", "p"});
-  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters, rule::not_negative_or_missing);
+  io.optional_field("prior_sd", fits.prior_sd, {"p"}, parameters);
   if constexpr (Io::reads) io.finish([&] { restore_window_structure(fits, io.size("n"), io.size("p")); });
   std::vector<std::string> names = fits.parameter_names();
   io.attribute_texts("parameter_names", names);
   if constexpr (!Io::reads)
     io.attribute_texts("parameter_labels",
                        parameter_labels(fits, names_of(recording.states), names_of(recording.inputs)));
-  io.group("global", io.known({"n", "p", "samples"}),
+  io.group("global", io.known({"n", "p"}),
            [&](auto& member) { exchange_global(member, fits.global, parameters, units.states()); });
 }
 
 /// - candidates: one row for each number of components that was compared
 /// - parameters: free parameters
 /// - effective_samples: number of independent samples that contain as much information as the windows
-/// - heldout: log likelihood of windows that were not used for the fit
-/// - heldout_error: standard error of the difference between this `heldout` and that of the selected row
 /// - agreeing_restarts: random starts that reached the best likelihood
 /// - floor_active: 1: the covariance of a component is at the covariance floor
 /// - failed: reason of a failure
@@ -109,18 +107,12 @@ template <class Io, class C>
 void exchange_candidates(Io& io, C& candidates) {
   io.table("candidates", candidates, column("components", &Candidate::components).obeying(rule::at_least_one),
            column("covariance", &Candidate::covariance), column("log_likelihood", &Candidate::log_likelihood, "nat"),
-           column("parameters", &Candidate::parameters).obeying(rule::not_negative),
-           amount_column("effective_samples", &Candidate::effective_samples), column("bic", &Candidate::bic),
-           column("aic", &Candidate::aic), column("icl", &Candidate::icl),
-           column("heldout", &Candidate::heldout, "nat"),
-           column("iterations", &Candidate::iterations).obeying(rule::not_negative),
-           column("converged", &Candidate::converged),
-           column("agreeing_restarts", &Candidate::agreeing_restarts).obeying(rule::not_negative),
-           column("selected", &Candidate::selected), later_column("bic_naive", &Candidate::bic_naive),
-           later_column("restarts", &Candidate::restarts).obeying(rule::not_negative),
-           later_column("floor_active", &Candidate::floor_active), later_column("status", &Candidate::status),
-           later_column("heldout_error", &Candidate::heldout_error).obeying(rule::not_negative_or_missing),
-           later_column("failed", &Candidate::failed));
+           column("parameters", &Candidate::parameters), column("effective_samples", &Candidate::effective_samples),
+           column("bic", &Candidate::bic), column("aic", &Candidate::aic), column("iterations", &Candidate::iterations),
+           column("converged", &Candidate::converged), column("agreeing_restarts", &Candidate::agreeing_restarts),
+           column("selected", &Candidate::selected), column("bic_naive", &Candidate::bic_naive),
+           column("restarts", &Candidate::restarts), column("floor_active", &Candidate::floor_active),
+           column("status", &Candidate::status), column("failed", &Candidate::failed));
 }
 
 /// `features`: units of the features.
@@ -145,14 +137,14 @@ void exchange_mixture(Io& io, X& result, const Unit& features) {
       [&](auto& stored) {
         io.field("covariances", stored, {"K", "F", "F"}, outer(features), rule::covariances);
       });
-  io.optional_attribute("clustered_windows", result.clustered, rule::count_of("M"));
-  io.attribute_unless(Index{0}, "compared_windows", result.compared, rule::count_of("M"));
+  io.attribute("clustered_windows", result.clustered);
+  io.attribute_unless(Index{0}, "compared_windows", result.compared);
   io.optional_field("features", result.features, {"M", "F"}, features);
-  io.optional_attribute("noise_weight", result.mixture.noise.weight, rule::share);
+  io.attribute("noise_weight", result.mixture.noise.weight, rule::share);
   io.optional_field("noise_lower", result.mixture.noise.lower, {"F"}, features, rule::finite);
   io.optional_field("noise_upper", result.mixture.noise.upper, {"F"}, features, rule::finite);
   io.field("labels", result.labels, {"M"}, {}, rule::position_or_none("K"));
-  io.through_rows("responsibilities", result.responsibilities, {"M", "K"}, rule::parts_or_missing);
+  io.through_rows("responsibilities", result.responsibilities, {"M", "K"});
   if constexpr (Io::reads) io.finish([&] { check_mixture(result); });
 }
 
@@ -181,7 +173,6 @@ void exchange_archive(Io& io, A& archive) {
   const Units units(recording);
   Sizes channels;
   if (archive.recording) channels.set("n", recording.states.size());
-  if (archive.recording) set_samples(channels, recording);
   exchange_part(io, "windows", archive.windows, channels,
                 [&](auto& member, auto& part) { exchange_windows(member, part, recording, units); });
   Sizes known;
@@ -195,7 +186,7 @@ void exchange_archive(Io& io, A& archive) {
   const auto exchange_one = [&](auto& member, auto& part) { exchange_bank(member, part, units); };
   exchange_part(io, "bank", archive.bank, {}, [&](auto& member, auto& part) {
     exchange_one(member, part);
-    member.optional_attribute("measured_fit", archive.measured_fit);
+    member.attribute("measured_fit", archive.measured_fit);
     member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions, rule::not_negative);
     member.optional_attribute_texts("mode_names", archive.mode_names);
     if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
@@ -208,7 +199,7 @@ void exchange_archive(Io& io, A& archive) {
   exchange_part(io, "drifting", archive.drifting, {},
                 [&](auto& member, auto& part) { exchange_drifting(member, part, units); });
   exchange_part(io, "nonlinear", archive.nonlinear, {}, exchange_one);
-  io.optional_group("residual_tests", !archive.residual_tests.empty(), channels.only({"samples"}),
+  io.optional_group("residual_tests", !archive.residual_tests.empty(), {},
                     [&](auto& member) { exchange_residual_tests(member, archive.residual_tests, recording); });
   io.optional_group("evaluation", !archive.evaluations.empty() || !archive.summary.empty(),
                     sizes_of_evaluation(archive, recording),

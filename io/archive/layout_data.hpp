@@ -66,7 +66,6 @@ void exchange_channels(Io& io, R& recording) {
 /// - state: measured states; NaN: missing
 /// - input: input that acts from this sample on
 /// - truth: true states, if the data have them
-/// - weight: weight of the transition that ends in the sample
 /// - label: position in `label_names`; -1: unknown
 template <class Io, class T, class L>
 void exchange_run(Io& samples, T& run, L& label, const Units& units) {
@@ -74,7 +73,6 @@ void exchange_run(Io& samples, T& run, L& label, const Units& units) {
   samples.field("state", run.state, {"S", "n"}, units.states(), rule::finite_or_missing);
   samples.field("input", run.input, {"S", "m"}, units.inputs(), rule::finite_or_missing);
   samples.optional_field("truth", run.truth, {"S", "n"}, units.states(), rule::finite_or_missing);
-  samples.optional_field("weight", run.weight, {"S"}, {}, rule::not_negative_or_missing);
   samples.optional_field("label", label, {"S"});  // positions in `label_names`
 }
 
@@ -121,9 +119,9 @@ void exchange_recording(Io& io, R& recording, L& labels, S& step_scatter) {
 template <class Io, class P>
 void exchange_pooled(Io& io, const std::string& name, P& pooled) {
   io.attribute(name, pooled.mean);
-  io.attribute(name + "_standard_error", pooled.standard_error, rule::not_negative_or_missing);
-  io.attribute(name + "_between_runs_sd", pooled.between_sd, rule::not_negative_or_missing);
-  io.attribute(name + "_runs", pooled.count, rule::not_negative);
+  io.attribute(name + "_standard_error", pooled.standard_error);
+  io.attribute(name + "_between_runs_sd", pooled.between_sd);
+  io.attribute(name + "_runs", pooled.count);
 }
 
 /// /lag: delays between inputs and states that `data.lag_s = auto` estimated, for all runs and for each run.
@@ -137,16 +135,13 @@ void exchange_lag(Io& io, L& lag) {
   io.attribute("correction", lag.correction);
   exchange_pooled(io, "lag_s", lag.lag);
   io.table("scores", lag.scores, column("correction", &LagScore::correction),
-           column("transitions", &LagScore::transitions).obeying(rule::not_negative),
-           column("log_score", &LagScore::log_score, "nat"), amount_column("rmse", &LagScore::rmse),
-           column("gain", &LagScore::gain, "nat"),
-           amount_column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
+           column("transitions", &LagScore::transitions), column("log_score", &LagScore::log_score, "nat"),
+           column("rmse", &LagScore::rmse), column("gain", &LagScore::gain, "nat"),
+           column("gain_standard_error", &LagScore::gain_standard_error, "nat"));
   io.table("runs", lag.runs, column("run", &RunLag::run), column("status", &RunLag::status),
-           column("lag_s", &RunLag::lag_s, "s"),
-           amount_column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
-           column("time_constant_s", &RunLag::time_constant_s, "s"),
-           column("r_squared", &RunLag::r_squared).obeying(rule::at_most_one),
-           column("applied_lag_s", &RunLag::applied_lag_s, "s").obeying(rule::finite));
+           column("lag_s", &RunLag::lag_s, "s"), column("lag_standard_error_s", &RunLag::lag_standard_error_s, "s"),
+           column("time_constant_s", &RunLag::time_constant_s, "s"), column("r_squared", &RunLag::r_squared),
+           column("applied_lag_s", &RunLag::applied_lag_s, "s"));
 }
 
 /// /structure: lags and delay that `window.model = auto` or lags of `auto` chose.
@@ -171,26 +166,25 @@ void exchange_found_structure(Io& io, F& found, Eigen::Index inputs) {
   io.attribute("state_lags", found.state_lags, rule::lags);
   io.attribute("input_lags", found.input_lags, rule::lags);
   exchange_delays(io, found.input_delay, inputs);
-  io.attribute("samples", found.samples, rule::not_negative);
-  io.attribute("parts", found.parts, rule::not_negative);
+  io.attribute("samples", found.samples);
+  io.attribute("parts", found.parts);
   io.attribute("by_runs", found.by_runs);
-  io.attribute("structures", found.structures, rule::not_negative);
-  io.attribute("noise_lags", found.noise_lags, rule::not_negative);
+  io.attribute("structures", found.structures);
+  io.attribute("noise_lags", found.noise_lags);
   io.attribute("differences", found.differences);
   io.attribute("remark", found.remark);
   io.table("scores", found.scores, column("state_lags", &StructureScore::state_lags).obeying(rule::lags),
            column("input_lags", &StructureScore::input_lags).obeying(rule::lags),
            column("input_delay", &StructureScore::input_delay).obeying(rule::delay),
            column("log_score", &StructureScore::log_score, "nat"), column("loss", &StructureScore::loss, "nat"),
-           amount_column("loss_standard_error", &StructureScore::loss_standard_error, "nat"),
-           amount_column("rmse", &StructureScore::rmse), column("chosen", &StructureScore::chosen),
+           column("loss_standard_error", &StructureScore::loss_standard_error, "nat"),
+           column("rmse", &StructureScore::rmse), column("chosen", &StructureScore::chosen),
            column("linear", &StructureScore::linear), column("one_motion", &StructureScore::one_motion),
            column("drifting", &StructureScore::drifting),
            column("drifting_score", &StructureScore::drifting_score, "nat"),
            column("modes_score", &StructureScore::modes_score, "nat"),
            column("one_motion_score", &StructureScore::one_motion_score, "nat"),
-           column("noise_lags", &StructureScore::noise_lags).obeying(rule::not_negative),
-           column("differences", &StructureScore::differences));
+           column("noise_lags", &StructureScore::noise_lags), column("differences", &StructureScore::differences));
 }
 
 }  // namespace modebank::layout

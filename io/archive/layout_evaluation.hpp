@@ -22,10 +22,8 @@ template <class Io, class R>
 void exchange_left_out(Io& io, R& rows, const Unit& states) {
   io.optional_table("left_out", rows, column("filter", &LeftOutRow::filter),
                     column("horizon", &LeftOutRow::horizon, "samples").obeying(rule::at_least_one),
-                    column("samples", &LeftOutRow::samples).obeying(rule::not_negative),
-                    column("log_score", &LeftOutRow::log_score, "nat"),
-                    amount_column("rmse", &LeftOutRow::rmse, joined(states)),
-                    share_column("start", &LeftOutRow::start));
+                    column("samples", &LeftOutRow::samples), column("log_score", &LeftOutRow::log_score, "nat"),
+                    column("rmse", &LeftOutRow::rmse, joined(states)), column("start", &LeftOutRow::start));
 }
 
 /// - prediction: one step ahead, all modes combined
@@ -46,20 +44,17 @@ template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("prediction", evaluation.prediction, {"S", "n_y"}, states);
   io.field("innovation", evaluation.innovation, {"S", "n_y"}, states);
-  io.field("innovation_covariance", evaluation.innovation_covariance, {"S", "n_y", "n_y"}, outer(states),
-           rule::computed_covariances);
+  io.field("innovation_covariance", evaluation.innovation_covariance, {"S", "n_y", "n_y"}, outer(states));
   io.field("state", evaluation.state, {"S", "n_y"}, states);
-  io.field("covariance", evaluation.covariance, {"S", "n_y", "n_y"}, outer(states), rule::computed_covariances);
-  io.field("nis", evaluation.nis, {"S"}, {}, rule::not_negative_or_missing);
-  io.field("pit", evaluation.pit, {"S", "n_y"}, {}, rule::share_or_missing);
+  io.field("covariance", evaluation.covariance, {"S", "n_y", "n_y"}, outer(states));
+  io.field("nis", evaluation.nis, {"S"});
+  io.field("pit", evaluation.pit, {"S", "n_y"});
   io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
-  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"S", "K"}, {},
-           rule::probabilities_or_missing);
-  io.field("mode_probability", evaluation.mode_probability, {"S", "K"}, {}, rule::probabilities_or_missing);
-  io.optional_field("spread_share", evaluation.spread_share, {"S"}, {}, rule::share_or_missing);
+  io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"S", "K"});
+  io.field("mode_probability", evaluation.mode_probability, {"S", "K"});
+  io.optional_field("spread_share", evaluation.spread_share, {"S"});
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n_y"}, states);
-  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states),
-                    rule::computed_covariances);
+  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states));
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));
   if constexpr (Io::reads)
     io.finish([&] {
@@ -76,7 +71,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
 template <class Io, class F>
 void exchange_free_run(Io& io, F& run, const Unit& states) {
   io.optional_field("free_run_mean", run.mean, {"S", "n_y"}, states);
-  io.optional_field("free_run_sd", run.deviation, {"S", "n_y"}, states, rule::not_negative_or_missing);
+  io.optional_field("free_run_sd", run.deviation, {"S", "n_y"}, states);
   io.optional_field("free_run_lower", run.lower, {"S", "n_y"}, states);
   io.optional_field("free_run_upper", run.upper, {"S", "n_y"}, states);
   io.optional_field("free_run_mode", run.mode, {"S"}, {}, rule::position_or_none("K"));
@@ -134,16 +129,15 @@ void exchange_filter(Io& io, F& evaluation, const Recording& recording, const Un
 /// - whiteness_p: p-value of the Ljung-Box test on the standardised innovations
 template <class Io, class S>
 void exchange_summary(Io& io, S& summary, const Unit& states) {
-  io.optional_table(
-      "summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
-      column("run", &SummaryRow::run), column("samples", &SummaryRow::samples).obeying(rule::count_of("samples")),
-      column("log_score", &SummaryRow::log_score, "nat"), amount_column("rmse", &SummaryRow::rmse, joined(states)),
-      amount_column("nis_mean", &SummaryRow::nis_mean), share_column("nis_above", &SummaryRow::nis_above),
-      share_column("nis_below", &SummaryRow::nis_below), share_column("coverage_50", &SummaryRow::coverage_50),
-      share_column("coverage_90", &SummaryRow::coverage_90), share_column("coverage_95", &SummaryRow::coverage_95),
-      share_column("coverage_99", &SummaryRow::coverage_99), share_column("too_far", &SummaryRow::too_far),
-      share_column("too_close", &SummaryRow::too_close), share_column("pit_distance", &SummaryRow::pit_distance),
-      share_column("whiteness_p", &SummaryRow::whiteness_p));
+  io.optional_table("summary", summary, column("filter", &SummaryRow::filter), column("role", &SummaryRow::role),
+                    column("run", &SummaryRow::run), column("samples", &SummaryRow::samples),
+                    column("log_score", &SummaryRow::log_score, "nat"),
+                    column("rmse", &SummaryRow::rmse, joined(states)), column("nis_mean", &SummaryRow::nis_mean),
+                    column("nis_above", &SummaryRow::nis_above), column("nis_below", &SummaryRow::nis_below),
+                    column("coverage_50", &SummaryRow::coverage_50), column("coverage_90", &SummaryRow::coverage_90),
+                    column("coverage_95", &SummaryRow::coverage_95), column("coverage_99", &SummaryRow::coverage_99),
+                    column("too_far", &SummaryRow::too_far), column("too_close", &SummaryRow::too_close),
+                    column("pit_distance", &SummaryRow::pit_distance), column("whiteness_p", &SummaryRow::whiteness_p));
 }
 
 /// - horizon: scores of predictions this number of samples ahead, with `filter.horizon`
@@ -151,12 +145,11 @@ void exchange_summary(Io& io, S& summary, const Unit& states) {
 /// - coverage_95: share of the signals inside the central 95 % band, each by itself
 template <class Io, class R>
 void exchange_horizon(Io& io, R& rows, const Unit& states) {
-  io.optional_table(
-      "horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
-      column("run", &HorizonRow::run), column("horizon", &HorizonRow::horizon, "samples").obeying(rule::at_least_one),
-      column("samples", &HorizonRow::samples).obeying(rule::count_of("samples")),
-      column("log_score", &HorizonRow::log_score, "nat"), amount_column("rmse", &HorizonRow::rmse, joined(states)),
-      later_column("coverage_95", &HorizonRow::coverage_95).obeying(rule::share_or_missing));
+  io.optional_table("horizon", rows, column("filter", &HorizonRow::filter), column("role", &HorizonRow::role),
+                    column("run", &HorizonRow::run),
+                    column("horizon", &HorizonRow::horizon, "samples").obeying(rule::at_least_one),
+                    column("samples", &HorizonRow::samples), column("log_score", &HorizonRow::log_score, "nat"),
+                    column("rmse", &HorizonRow::rmse, joined(states)), column("coverage_95", &HorizonRow::coverage_95));
 }
 
 /// - combination: weights of the filters in the combined forecasts
@@ -166,9 +159,8 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
 template <class Io, class R>
 void exchange_combination(Io& io, R& rows) {
   io.optional_table("combination", rows, column("role", &CombinationRow::role),
-                    column("horizon", &CombinationRow::horizon, "samples").obeying(rule::not_negative),
-                    column("filter", &CombinationRow::filter), share_column("weight", &CombinationRow::weight),
-                    column("start", &CombinationRow::start).obeying(rule::share_or_missing));
+                    column("horizon", &CombinationRow::horizon, "samples"), column("filter", &CombinationRow::filter),
+                    column("weight", &CombinationRow::weight), column("start", &CombinationRow::start));
 }
 
 /// - free_run: scores of free runs, with `filter.simulate`
@@ -179,22 +171,18 @@ template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
   io.optional_table("free_run", rows, column("filter", &Row::filter), column("role", &Row::role),
-                    column("run", &Row::run), column("method", &Row::method),
-                    column("start", &Row::start, "samples").obeying(rule::not_negative),
-                    column("samples", &Row::samples).obeying(rule::count_of("samples")),
-                    column("log_score", &Row::log_score, "nat"), amount_column("rmse", &Row::rmse, joined(states)),
-                    amount_column("nrmse", &Row::nrmse), column("fit", &Row::fit, "%"),
-                    share_column("coverage_50", &Row::coverage_50), share_column("coverage_90", &Row::coverage_90),
-                    share_column("coverage_95", &Row::coverage_95), share_column("coverage_99", &Row::coverage_99),
-                    column("lost_paths", &Row::lost_paths).obeying(rule::not_negative));
+                    column("run", &Row::run), column("method", &Row::method), column("start", &Row::start, "samples"),
+                    column("samples", &Row::samples), column("log_score", &Row::log_score, "nat"),
+                    column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse),
+                    column("fit", &Row::fit, "%"), column("coverage_50", &Row::coverage_50),
+                    column("coverage_90", &Row::coverage_90), column("coverage_95", &Row::coverage_95),
+                    column("coverage_99", &Row::coverage_99), column("lost_paths", &Row::lost_paths));
 }
 
 /// - diagnostics: consistency of each filter and mode, with intervals
 /// - mode: -1: all modes
 /// - dwell: mean length of a visit, by `viterbi_mode` or the most probable mode
 /// - dwell_model: mean length of a visit that the transition matrix gives
-/// - nis_lower: for a consistent filter the mean NIS lies between `nis_lower` and `nis_upper`
-/// - nees_lower: for a consistent filter the mean NEES lies between `nees_lower` and `nees_upper`
 /// - autocorrelation: largest autocorrelation of the standardised innovations
 /// - autocorrelation_lag: lag of the largest autocorrelation
 template <class Io, class R>
@@ -202,27 +190,21 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
   using Row = DiagnosticsRow;
   io.optional_table(
       "diagnostics", rows, column("filter", &Row::filter), column("role", &Row::role),
-      column("mode", &Row::mode).obeying(rule::position_or_none("K")),
-      column("samples", &Row::samples).obeying(rule::count_of("samples")), share_column("usage", &Row::usage),
-      share_column("entropy", &Row::entropy), amount_column("dwell", &Row::dwell, "samples"),
-      amount_column("dwell_model", &Row::dwell_model, "samples"), share_column("coverage_50", &Row::coverage_50),
-      share_column("coverage_50_lower", &Row::coverage_50_lower),
-      share_column("coverage_50_upper", &Row::coverage_50_upper), share_column("coverage_90", &Row::coverage_90),
-      share_column("coverage_90_lower", &Row::coverage_90_lower),
-      share_column("coverage_90_upper", &Row::coverage_90_upper), share_column("coverage_95", &Row::coverage_95),
-      share_column("coverage_95_lower", &Row::coverage_95_lower),
-      share_column("coverage_95_upper", &Row::coverage_95_upper), share_column("coverage_99", &Row::coverage_99),
-      share_column("coverage_99_lower", &Row::coverage_99_lower),
-      share_column("coverage_99_upper", &Row::coverage_99_upper), share_column("too_far", &Row::too_far),
-      share_column("too_far_lower", &Row::too_far_lower), share_column("too_far_upper", &Row::too_far_upper),
-      share_column("too_close", &Row::too_close), share_column("too_close_lower", &Row::too_close_lower),
-      share_column("too_close_upper", &Row::too_close_upper), amount_column("nis_mean", &Row::nis_mean),
-      amount_column("nis_lower", &Row::nis_lower), amount_column("nis_upper", &Row::nis_upper),
-      amount_column("nees_mean", &Row::nees_mean), amount_column("nees_lower", &Row::nees_lower),
-      amount_column("nees_upper", &Row::nees_upper), amount_column("state_rmse", &Row::state_rmse, joined(states)),
-      share_column("whiteness_p", &Row::whiteness_p), column("verdict", &Row::verdict), column("flags", &Row::flags),
-      later_column("autocorrelation", &Row::autocorrelation),
-      later_column("autocorrelation_lag", &Row::autocorrelation_lag));
+      column("mode", &Row::mode).obeying(rule::position_or_none("K")), column("samples", &Row::samples),
+      column("usage", &Row::usage), column("entropy", &Row::entropy), column("dwell", &Row::dwell, "samples"),
+      column("dwell_model", &Row::dwell_model, "samples"), column("coverage_50", &Row::coverage_50),
+      column("coverage_50_lower", &Row::coverage_50_lower), column("coverage_50_upper", &Row::coverage_50_upper),
+      column("coverage_90", &Row::coverage_90), column("coverage_90_lower", &Row::coverage_90_lower),
+      column("coverage_90_upper", &Row::coverage_90_upper), column("coverage_95", &Row::coverage_95),
+      column("coverage_95_lower", &Row::coverage_95_lower), column("coverage_95_upper", &Row::coverage_95_upper),
+      column("coverage_99", &Row::coverage_99), column("coverage_99_lower", &Row::coverage_99_lower),
+      column("coverage_99_upper", &Row::coverage_99_upper), column("too_far", &Row::too_far),
+      column("too_far_lower", &Row::too_far_lower), column("too_far_upper", &Row::too_far_upper),
+      column("too_close", &Row::too_close), column("too_close_lower", &Row::too_close_lower),
+      column("too_close_upper", &Row::too_close_upper), column("nis_mean", &Row::nis_mean),
+      column("nees_mean", &Row::nees_mean), column("state_rmse", &Row::state_rmse, joined(states)),
+      column("whiteness_p", &Row::whiteness_p), column("verdict", &Row::verdict), column("flags", &Row::flags),
+      column("autocorrelation", &Row::autocorrelation), column("autocorrelation_lag", &Row::autocorrelation_lag));
 }
 
 /// /evaluation/evidence: whether held-out runs show evidence for modes.
@@ -243,33 +225,30 @@ template <class Io, class F>
 void exchange_finding(Io& io, F& finding) {
   io.attribute("answer", finding.answer);
   io.attribute("role", finding.role);
-  io.attribute("runs", finding.runs, rule::not_negative);
-  io.attribute("modes", finding.modes, rule::not_negative);
+  io.attribute("runs", finding.runs);
+  io.attribute("modes", finding.modes);
   io.attribute("modes_differ", finding.modes_differ);
   io.attribute_unless(false, "without_noise", finding.without_noise);
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);
-  io.attribute("standard_error", finding.standard_error, rule::not_negative_or_missing);
-  io.optional_attribute("description", finding.description);
-  io.optional_attribute("stay", finding.stay, rule::not_negative_or_missing);
-  io.optional_attribute("stay_asked", finding.stay_asked, rule::not_negative);
+  io.attribute("standard_error", finding.standard_error);
+  io.attribute("description", finding.description);
+  io.attribute("stay", finding.stay);
+  io.attribute("stay_asked", finding.stay_asked);
   io.attribute_unless(false, "terms_asked", finding.terms_asked);
-  io.optional_attribute("pattern_gain", finding.pattern.gain);
-  io.optional_attribute("pattern_standard_error", finding.pattern.standard_error, rule::not_negative_or_missing);
+  io.attribute("pattern_gain", finding.pattern.gain);
+  io.attribute("pattern_standard_error", finding.pattern.standard_error);
   io.attribute("better_description", finding.better_description);
   io.attribute("text", finding.text);
   io.optional_attribute_texts("equations", finding.equations);
-  io.optional_table("gains", finding.gains, column("competitor", &PairedGain::competitor),
-                    column("samples", &PairedGain::samples).obeying(rule::count_of("samples")),
-                    column("gain", &PairedGain::gain, "nat"),
-                    amount_column("standard_error", &PairedGain::standard_error, "nat"),
-                    amount_column("degrees_of_freedom", &PairedGain::degrees_of_freedom),
-                    amount_column("margin", &PairedGain::margin, "nat"), column("by_blocks", &PairedGain::by_blocks),
-                    later_column("rank_p", &PairedGain::rank_p).obeying(rule::share));
+  io.optional_table(
+      "gains", finding.gains, column("competitor", &PairedGain::competitor), column("samples", &PairedGain::samples),
+      column("gain", &PairedGain::gain, "nat"), column("standard_error", &PairedGain::standard_error, "nat"),
+      column("degrees_of_freedom", &PairedGain::degrees_of_freedom), column("margin", &PairedGain::margin, "nat"),
+      column("by_blocks", &PairedGain::by_blocks), column("rank_p", &PairedGain::rank_p));
   io.optional_table("better_means", finding.better_means, column("competitor", &BetterMean::competitor),
-                    column("horizon", &BetterMean::horizon, "samples").obeying(rule::not_negative),
-                    column("state", &BetterMean::state), amount_column("rmse_bank", &BetterMean::rmse_bank),
-                    amount_column("rmse", &BetterMean::rmse));
+                    column("horizon", &BetterMean::horizon, "samples"), column("state", &BetterMean::state),
+                    column("rmse_bank", &BetterMean::rmse_bank), column("rmse", &BetterMean::rmse));
 }
 
 /// - confusion: labels against modes, with `data.label`
@@ -280,8 +259,7 @@ void exchange_confusion(Io& io, R& rows) {
   using Row = ConfusionRow;
   io.optional_table("confusion", rows, column("filter", &Row::filter), column("role", &Row::role),
                     column("label", &Row::label), column("mode", &Row::mode).obeying(rule::position("K")),
-                    column("samples", &Row::samples).obeying(rule::count_of("samples")),
-                    share_column("share", &Row::share));
+                    column("samples", &Row::samples), column("share", &Row::share));
 }
 
 template <class Io, class A>
@@ -308,8 +286,7 @@ void exchange_evaluation(Io& io, A& archive, const Recording& recording, const U
   exchange_free_runs(io, archive.free_runs, units.states());
   exchange_diagnostics(io, archive.diagnostics, units.states());
   exchange_confusion(io, archive.confusion);
-  exchange_part(io, "evidence", archive.finding, io.known({"samples"}),
-                [](auto& member, auto& part) { exchange_finding(member, part); });
+  exchange_part(io, "evidence", archive.finding, {}, [](auto& member, auto& part) { exchange_finding(member, part); });
   if constexpr (Io::reads) {
     io.finish([&] { check_modes(archive); });
     io.judge([&] { check_score_names(archive); });
@@ -332,15 +309,13 @@ void exchange_residual_tests(Io& io, S& sets, const Recording& recording) {
   const auto take = [&](const auto& row) { restored.take(row); };
   io.table_rows(
       "runs", [&](const auto& append) { store_residual_runs(sets, runs, append); }, take, column("model", &Run::model),
-      column("run", &Run::run), column("samples", &Run::samples).obeying(rule::count_of("samples")),
-      share_column("level", &Run::level), amount_column("autocorrelation_band", &Run::autocorrelation_band),
-      column("lags", &Run::lags).obeying(rule::not_negative), share_column("ljung_box_p", &Run::ljung_box_p),
-      amount_column("cross_correlation_band", &Run::cross_correlation_band));
+      column("run", &Run::run), column("samples", &Run::samples), column("level", &Run::level),
+      column("autocorrelation_band", &Run::autocorrelation_band), column("lags", &Run::lags),
+      column("ljung_box_p", &Run::ljung_box_p), column("cross_correlation_band", &Run::cross_correlation_band));
   io.table_rows(
       "lags", [&](const auto& append) { store_residual_lags(sets, runs, append); }, take, column("model", &Lag::model),
-      column("run", &Lag::run), column("lag", &Lag::lag, "samples").obeying(rule::not_negative),
-      column("autocorrelation", &Lag::autocorrelation).obeying(rule::finite_or_missing),
-      column("cross_correlation", &Lag::cross_correlation).obeying(rule::finite_or_missing));
+      column("run", &Lag::run), column("lag", &Lag::lag, "samples"), column("autocorrelation", &Lag::autocorrelation),
+      column("cross_correlation", &Lag::cross_correlation));
   if constexpr (Io::reads) io.finish([&] { sets = restored.sets(); });
 }
 

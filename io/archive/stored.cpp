@@ -253,12 +253,6 @@ void check_score_names(const Archive& archive) {
   check_finding(archive);
 }
 
-void set_samples(Sizes& sizes, const Recording& recording) {
-  Index samples = 0;
-  for (const Trajectory& run : recording.runs) samples += run.samples();
-  if (samples > 0) sizes.set("samples", static_cast<hsize_t>(samples));
-}
-
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
   Sizes sizes;
   if (archive.recording) sizes.set("n_y", archive.recording->states.size());
@@ -271,7 +265,6 @@ Sizes sizes_of_filter(const Archive& archive, const std::string& filter) {
 Sizes sizes_of_evaluation(const Archive& archive, const Recording& recording) {
   Sizes sizes;
   if (!recording.states.empty()) sizes.set("n_y", recording.states.size());
-  set_samples(sizes, recording);
   std::size_t modes = 0;
   for (const char* filter : filters)
     if (const auto bank = whole_bank(archive, filter)) modes = std::max(modes, bank->modes.size());

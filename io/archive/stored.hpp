@@ -70,8 +70,6 @@ void check_score_names(const Archive& archive);
 /// Throws DataError if a name occurs twice.
 void check_different(const std::string& what, const std::vector<std::string>& names);
 
-/// Binds the letter for the number of samples of all runs. No number of samples may exceed it.
-void set_samples(Sizes& sizes, const Recording& recording);
 /// Extents of a filter's evaluation. They come from the filter's bank and the data, if the archive contains these.
 Sizes sizes_of_filter(const Archive& archive, const std::string& filter);
 /// Extents of the tables over all filters.

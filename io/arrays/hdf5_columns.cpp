@@ -89,9 +89,7 @@ class Hdf5Columns : public ColumnStore {
   void refuse_archive(hid_t root) const {
     if (hdf5_text_attribute(root, "format").starts_with("modebank"))
       throw ConfigurationError(
-          fmt::format("{} is an archive of modebank, not a log; use `modebank show` or `modebank report`, or continue "
-                      "from its stages with --archive.input",
-                      path_));
+          fmt::format("{} is an archive of modebank, not a log; use `modebank show` or `modebank report`", path_));
   }
 
   [[noreturn]] void fail_empty(const Hdf5Walk& walk) const {

@@ -10,8 +10,7 @@ namespace modebank {
 
 /// A type of file that commands write, and the test that recognises such a file.
 struct FileForm {
-  std::string name;                                          ///< the type's name with its article: "a checkpoint of
-                                                             ///< track"
+  std::string name;                                          ///< the type's name with its article: "a page"
   std::function<bool(const std::filesystem::path&)> is_one;  ///< called only for regular files that are not empty
 };
 
@@ -20,7 +19,7 @@ FileForm form_by_front(std::string name, std::string sign, std::size_t within);
 
 /// An output file whose path the user has typed.
 struct OutputFile {
-  std::string option;          ///< the option with the file's path: "-o", "track.checkpoint"
+  std::string option;          ///< the option with the file's path: "-o"
   std::filesystem::path path;  ///< the path as the user typed it
   FileForm form;               ///< form of the file's content
 };

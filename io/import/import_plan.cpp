@@ -80,19 +80,16 @@ void plan_columns(FilePlan& plan, const DataOptions& options, const std::shared_
   plan.inputs_clock =
       plan.input.empty() ? find.source_without_column(inputs, plan.states_clock) : find.clock_of(plan.input.front());
   plan.truth = find.numbers(options.truth, states_first);
-  if (!options.weight.empty()) plan.weight = {find.number(options.weight, states_first)};
   if (!options.where.empty()) plan.where = {find.where(states_first)};
   const std::optional<std::size_t> labels =
       options.label.empty() ? std::nullopt : std::optional(find.source_with(options.label, states_first));
   plan_times(plan, find, options);
   if (labels) plan.label = {*labels, find.text(*labels, options.label)};
-  // A sample without a time has no position, and a missing weight must not be guessed.
+  // A sample without a time has no position.
   for (SourcePlan& source : plan.sources)
     source.request.may_miss.assign(source.request.numbers.size(), options.missing != Missing::error);
   for (const ColumnRef where : plan.where)
     if (where.source != joint_source) plan.sources[where.source].request.may_miss[where.column] = true;
-  for (const ColumnRef weight : plan.weight)
-    if (weight.source != joint_source) plan.sources[weight.source].request.may_miss[weight.column] = false;
   plan.states = find.channels(plan.state);
   plan.inputs = find.channels(plan.input);
 }

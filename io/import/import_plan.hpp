@@ -45,8 +45,7 @@ struct FilePlan {
   std::vector<std::shared_ptr<const TableReader>> readers;  ///< one for each path
   std::vector<SourcePlan> sources;                          ///< the tables with requested columns
   std::vector<ColumnRef> state, input, truth;
-  std::vector<ColumnRef> weight;  ///< at most one channel
-  std::vector<ColumnRef> where;   ///< at most one channel
+  std::vector<ColumnRef> where;  ///< at most one channel
   std::vector<JointColumn> joint;
   std::vector<Channel> states, inputs;  ///< names of the channels; units if the files state them
   bool by_row = false;                  ///< true for Join::row

@@ -49,7 +49,7 @@ constexpr std::array formats{
            }},
 };
 
-/// Lines of Python that read a file into data frames and run modebank. docs/howto/any_reader.md contains the same
+/// Lines of Python that read a file into data frames and run modebank. docs/howto/formats.md contains the same
 /// lines.
 constexpr std::string_view px4_lines = R"(
 from pyulog import ULog

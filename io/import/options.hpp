@@ -62,9 +62,6 @@ struct DataOptions {
   std::string where;                    ///< a gap is where this expression is false or missing; empty: no condition
   std::vector<std::string> state_unit;  ///< one per state, one for all states, or none
   std::vector<std::string> input_unit;
-  /// Column of sample weights >= 0 (Trajectory::weight); empty: no weights. The states file is searched first, as for
-  /// `truth`.
-  std::string weight;
   /// Column of a known class such as the ground, as text or whole numbers; empty: no class. A missing value means the
   /// previous value.
   std::string label;

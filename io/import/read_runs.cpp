@@ -129,7 +129,6 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
   RunStreams run;
   run.run = name;
   run.truth.resize(plan.truth.size());
-  run.weight.resize(plan.weight.size());
   run.where.resize(plan.where.size());
   Gathered states{plan.state, {}}, inputs{plan.input, {}};
   const auto gather = [&](const std::vector<ColumnRef>& refs, std::vector<RunStreams::Companion>& companions) {
@@ -140,11 +139,8 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
       with.companions.push_back(&companions[i]);
     }
   };
-  for (const ColumnRef ref : plan.weight)
-    if (ref.source != joint_source) reader.check_weights(ref, slice.rows[ref.source]);
   run.label = reader.labels(slice);
   gather(plan.truth, run.truth);
-  gather(plan.weight, run.weight);
   gather(plan.where, run.where);
   run.states = states.split(reader.stream(plan.states_clock, states.refs, slice, Bring::interpolated));
   run.inputs = inputs.split(reader.stream(plan.inputs_clock, inputs.refs, slice, Bring::held));

@@ -123,14 +123,6 @@ LabelStream RowReader::labels(const RunSlice& run) const {
   return result;
 }
 
-void RowReader::check_weights(ColumnRef ref, const Rows& rows) const {
-  for (const std::size_t row : rows)
-    if (const double value = tables_[ref.source].numbers[ref.column][row]; value < 0.0)
-      throw DataError(fmt::format(
-          "{}: column {}: the weight {} is negative; a weight is at least 0, and 0 leaves the sample's transition out",
-          place(ref.source, row), plan_.sources[ref.source].request.numbers[ref.column], value));
-}
-
 void RowReader::gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const {
   if (ref.source == joint_source)
     for (const ColumnRef operand : plan_.joint[ref.column].operands) gather_columns(operand, read);

@@ -57,9 +57,6 @@ class RowReader {
   /// The run's labels, at the times of the table with the labels.
   LabelStream labels(const RunSlice& run) const;
 
-  /// Throws unless all weights are at least 0.
-  void check_weights(ColumnRef ref, const Rows& rows) const;
-
  private:
   /// Adds the table columns from which `ref` is computed.
   void gather_columns(ColumnRef ref, std::vector<ColumnRef>& read) const;

@@ -125,11 +125,6 @@ Trajectory join_run(const RunStreams& run, const DataOptions& options, const Log
     const bool is_mean = std::count(averaged.states.begin(), averaged.states.end(), row) > 0;
     joined.truth.row(row) = is_mean ? average_ending(truth, joined.time_s, step_s) : interpolate(truth, joined.time_s);
   }
-  for (const RunStreams::Companion& weight : run.weight) {
-    const Stream stream{weight.with_states ? states.time_s : inputs.time_s, weight.values.transpose()};
-    joined.weight = weight.with_states ? interpolate_weights(stream, joined.time_s)
-                                       : VectorXd(hold(stream, joined.time_s).transpose());
-  }
   return joined;
 }
 

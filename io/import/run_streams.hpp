@@ -45,13 +45,12 @@ struct RunStreams {
     Eigen::VectorXd values;
   };
   std::vector<Companion> truth;
-  std::vector<Companion> weight;  ///< at most one column
-  std::vector<Companion> where;   ///< at most one column; its values are 1 where data.where is true, otherwise 0
+  std::vector<Companion> where;  ///< at most one column; its values are 1 where data.where is true, otherwise 0
 
   LabelStream label;  ///< empty if there are no labels
 
   /// All columns that are sampled together with states or inputs.
-  std::vector<std::vector<Companion>*> companions() { return {&truth, &weight, &where}; }
+  std::vector<std::vector<Companion>*> companions() { return {&truth, &where}; }
 };
 
 /// Keeps the samples at these positions.

@@ -102,7 +102,7 @@ void set_times(const std::string& file, const TimeRequest& request, bool is_stam
   stamps.finish(file, table);
 }
 
-/// Lines of Python that read Protobuf messages into a data frame. docs/howto/any_reader.md contains the same lines.
+/// Lines of Python that read Protobuf messages into a data frame. docs/howto/formats.md contains the same lines.
 std::string protobuf_lines(const std::string& path) {
   return fmt::format(R"( (topics and columns are examples):
 from mcap.reader import make_reader

@@ -24,12 +24,11 @@ Eigen::MatrixXd points_of(const Samples& points) {
   return columns(points);
 }
 
-Selection fit_mixture(const Samples& points, const std::vector<Index>& runs, double effective_samples,
-                      std::uint64_t seed, const py::dict& keys) {
+Selection fit_mixture(const Samples& points, double effective_samples, std::uint64_t seed, const py::dict& keys) {
   const SelectionOptions options = config_of(keys, "mixture.").mixture.selection;
   const Eigen::MatrixXd values = points_of(points);
   const Unlocked unlocked;
-  return select(PointSet(values), {effective_samples, runs}, options, seed);
+  return select(PointSet(values), effective_samples, options, seed);
 }
 
 py::object candidates(const Selection& selection) {
@@ -42,8 +41,6 @@ py::object candidates(const Selection& selection) {
     row["effective_samples"] = candidate.effective_samples;
     row["bic"] = candidate.bic;
     row["aic"] = candidate.aic;
-    row["icl"] = candidate.icl;
-    row["heldout"] = candidate.heldout;
     row["converged"] = candidate.converged;
     row["selected"] = candidate.selected;
     rows.append(row);
@@ -80,8 +77,8 @@ void bind_mixture(py::module_& module) {
       .def("responsibilities", &responsibilities_of, py::arg("points"),
            "(N, K) posterior probability of each component at points (N, F).")
       .def("log_density", &log_densities, py::arg("points"), "(N,) log density at points (N, F) [nats].");
-  module.def("fit_mixture", &fit_mixture, py::arg("points"), py::arg("runs"), py::arg("effective_samples"),
-             py::arg("seed"), py::arg("keys"));
+  module.def("fit_mixture", &fit_mixture, py::arg("points"), py::arg("effective_samples"), py::arg("seed"),
+             py::arg("keys"));
 }
 
 }  // namespace modebank::python

@@ -1,7 +1,7 @@
 #include <string>
 
 #include "app/chain/pipeline.hpp"
-#include "app/config/valid_config.hpp"
+#include "app/config/config_file.hpp"
 #include "modebank/base/error.hpp"
 #include "python/bindings/bindings.hpp"
 #include "python/bindings/keys.hpp"
@@ -38,11 +38,12 @@ class Callbacks : public app::Adviser {
 /// Returns the path of the archive.
 std::string run_file(const std::string& file, const py::dict& keys, const py::object& progress,
                      const py::object& warning) {
-  const app::Config config = app::load_valid_config(file, key_values(keys, ""));
+  const app::Config config = app::load_config(file, key_values(keys, ""));
+  app::validate(config);
   const Callbacks callbacks(progress, warning);
   {
     const py::gil_scoped_release unlocked;
-    app::check_request("run", config, file);
+    app::check_request(config, file);
     app::run_all(config, "modebank.run(" + file + ")", callbacks);
   }
   return config.archive.output;
@@ -59,7 +60,7 @@ std::string run_tables(const py::dict& tables, const py::dict& keys, const py::o
   const Callbacks callbacks(progress, warning);
   {
     const py::gil_scoped_release unlocked;
-    app::check_request("run", config, "", &memory);
+    app::check_request(config, "", &memory);
     app::run_all(config, "modebank.run(frames)", callbacks, &memory);
   }
   return config.archive.output;

@@ -193,14 +193,13 @@ def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray
     return _modebank.simulate(bank, times, states, inputs, keys)
 
 
-def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..12", *, runs: Sequence[int] = (),
-                effective_samples: float = 0.0, seed: int = 1, **options: Any) -> Mixture:
-    """Fits Gaussian mixtures to points (N, F) and returns the best Mixture by the criterion (default: BIC).
+def fit_mixture(points: np.ndarray, components: int | str | Sequence[int] = "1..12", *, effective_samples: float = 0.0,
+                seed: int = 1, **options: Any) -> Mixture:
+    """Fits Gaussian mixtures to points (N, F) and returns the Mixture with the lowest BIC.
 
-    components: a number, a list, or a range as "1..12"; runs: (N,) the run of each point, for held-out scores;
-    effective_samples: number of independent samples to which the points amount, 0: all. options: further keys of
-    the configuration's [mixture] section, as criterion="icl". Releases the interpreter lock; Ctrl-C ends it."""
+    components: a number, a list, or a range as "1..12"; effective_samples: number of independent samples to which the
+    points amount, 0: all. options: further keys of the configuration's [mixture] section, as covariance="diagonal".
+    Releases the interpreter lock; Ctrl-C ends it."""
     if isinstance(components, range):
         components = list(components)
-    return _modebank.fit_mixture(points, [int(run) for run in runs], effective_samples, seed,
-                                 {"components": components, **options})
+    return _modebank.fit_mixture(points, effective_samples, seed, {"components": components, **options})

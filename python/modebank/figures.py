@@ -25,7 +25,7 @@ MODES = ["#0072B2", "#E69F00", "#009E73", "#D55E00", "#CC79A7", "#56B4E9", "#F0E
 FILTERS = {"baseline": "#D55E00", "noise_only": "#009E73", "one_motion": "#E69F00", "drifting": "#56B4E9", "nonlinear": "#F0E442",
            "combined": "#4A2570", "bank": "#0072B2"}
 COMPETITORS = ["baseline", "noise_only", "one_motion", "drifting", "nonlinear"]
-OUTSIDE, OTHERS, BAND, ACCEPTED = "#D55E00", "#9a9a9a", "#d0d0d0", "#e6e6e6"
+OTHERS, BAND, ACCEPTED = "#9a9a9a", "#d0d0d0", "#e6e6e6"
 MOST_SAMPLES = 2000  # first samples of a run; a printed column shows no more
 MOST_WINDOWS = 6000
 RARE_SWITCH = 0.005  # probability per sample below which an arrow is left out
@@ -109,15 +109,6 @@ def predicted(archive, run, filter="bank"):
     return center, stats.norm.ppf((1 + LEVEL) / 2) * np.sqrt(variance)
 
 
-def nis_of_all(run, filter):
-    """NIS of each sample. With missing signals it is the value of equal tail probability for all signals."""
-    nis, pit = np.array(run[filter]["nis"]), run[filter]["pit"]
-    there = np.count_nonzero(~np.isnan(pit), axis=1)
-    some = (there > 0) & (there < pit.shape[1])
-    nis[some] = stats.chi2.isf(stats.chi2.sf(nis[some], there[some]), pit.shape[1])
-    return nis
-
-
 def draw_modes(archive, run, axes):
     """Draws mode probabilities stacked over time."""
     told, others = modes_by_use(archive)
@@ -198,8 +189,7 @@ def frame(values, boundaries):
 
 
 def selection(archive, width=COLUMN):
-    """Criteria over the number of mixture components: lower is better for BIC, ICL and AIC, higher for the held-out score. Grey: the
-    choice."""
+    """Criteria over the number of mixture components: lower is better. Grey: the choice."""
     if "/mixture/candidates" not in archive or len(archive["/mixture/candidates"]) < 2:
         raise LeftOut("the archive holds no two candidates")
     table = archive["/mixture/candidates"]
@@ -207,18 +197,11 @@ def selection(archive, width=COLUMN):
     figure, axes = blank(width, 2.3)
     for chosen in table["components"][table["selected"] == 1]:
         axes.axvline(chosen, color=ACCEPTED, linewidth=5, label="chosen")
-    for name, colour, marker in (("bic", MODES[0], "o"), ("icl", MODES[1], "s"), ("aic", MODES[2], "^")):
+    for name, colour, marker in (("bic", MODES[0], "o"), ("aic", MODES[2], "^")):
         axes.plot(table["components"], table[name], marker + "-", color=colour, markersize=3, label=name.upper())
-    axes.set(xlabel="components K", ylabel="BIC, ICL, AIC")
+    axes.set(xlabel="components K", ylabel="BIC, AIC")
     axes.xaxis.get_major_locator().set_params(integer=True)
-    if np.isfinite(table["heldout"]).any():
-        right = axes.twinx()
-        right.spines["right"].set_visible(True)
-        right.set_ylabel("held out [nats/window]")
-        right.plot(table["components"], table["heldout"], "D--", color=MODES[3], markersize=3, label="held out")
-        legend(axes, right)
-    else:
-        legend(axes)
+    legend(axes)
     return figure
 
 
@@ -237,50 +220,6 @@ def estimates(archive, run=None, state=0, width=COLUMN):
     data = archive.attributes("/data")
     top.set_ylabel(with_unit(data["state_names"][state], data["state_units"][state]))
     legend(top)
-    draw_modes(archive, run, bottom)
-    return figure
-
-
-def prediction(archive, run=None, state=0, width=COLUMN):
-    """Inputs and a state with the 95 % band that the bank predicts one sample ahead."""
-    run = judged_run(archive, run)
-    center, half = (values[:MOST_SAMPLES, state] for values in predicted(archive, run))
-    time, measured = run["time"][:MOST_SAMPLES], run["state"][:MOST_SAMPLES, state]
-    data = archive.attributes("/data")
-    figure, (top, bottom) = blank(width, 2.8, 2, height_ratios=[2, 3], sharex=True)
-    units = set(data["input_units"])
-    for j, name in enumerate(data["input_names"]):
-        top.step(time, run["input"][:MOST_SAMPLES, j], where="post", color=["black", *MODES[1:]][j % 8],
-                 label=shown(name if len(units) == 1 else with_unit(name, data["input_units"][j])))
-    top.set_ylabel(with_unit("inputs", *units) if len(units) == 1 else "inputs")
-    legend(top)
-    outside = np.abs(measured - center) > half
-    bottom.fill_between(time, center - half, center + half, color=BAND, linewidth=0, label="95 % band")
-    bottom.plot(time, measured, color="black", label="measured")
-    bottom.plot(time[outside], measured[outside], ".", color=OUTSIDE, markersize=2.5, label=f"outside ({outside.sum()} of {len(outside)})")
-    bottom.set(ylabel=with_unit(data["state_names"][state], data["state_units"][state]), xlabel="time [s]", xlim=time[[0, -1]])
-    legend(bottom)
-    return figure
-
-
-def nis(archive, run=None, width=COLUMN):
-    """Normalised innovation squared (NIS). Grey: where 95 % of the values of a consistent filter lie. Bottom: probabilities of the
-    modes."""
-    run = judged_run(archive, run)
-    time = run["time"][:MOST_SAMPLES]
-    figure, (top, bottom) = blank(width, 2.8, 2, height_ratios=[3, 2], sharex=True)
-    bounds = stats.chi2.ppf([(1 - LEVEL) / 2, (1 + LEVEL) / 2], run["state"].shape[1])
-    top.axhspan(*bounds, color=ACCEPTED, linewidth=0)
-    if "baseline" in run.keys():
-        top.plot(time, nis_of_all(run, "baseline")[:MOST_SAMPLES], "o", color=FILTERS["baseline"], markersize=1.2, markerfacecolor="none",
-                 markeredgewidth=0.4, label="baseline")
-    top.plot(time, nis_of_all(run, "bank")[:MOST_SAMPLES], ".", color=FILTERS["bank"], markersize=1.5, markeredgewidth=0, label=bank_title(archive))
-    for bound, name in zip(bounds, ("95 % bounds", "_")):
-        top.axhline(bound, color="black", linewidth=0.6, dashes=(6, 3), label=name)
-    top.set(yscale="log", ylabel="NIS")
-    top.set_ylim(bottom=max(1e-6, top.get_ylim()[0]))
-    top.yaxis.set_major_formatter(lambda value, _: f"1e{round(np.log10(value))}")
-    legend(top, markerscale=2)
     draw_modes(archive, run, bottom)
     return figure
 
@@ -309,8 +248,18 @@ def pit(archive, width=COLUMN):
     return figure
 
 
-def draw_coverage(names, shares, width):
-    """shares: training above and below, held out above and below its 95 % interval, a row per name [%]."""
+def coverage(archive, width=COLUMN):
+    """Share of samples whose normalised innovation squared (NIS) lies above (upwards) or below (downwards) its 95 % interval; a
+    consistent filter has 2.5 % on either side."""
+    if "/evaluation/summary" not in archive:
+        raise LeftOut("the archive holds no scores")
+    pooled = archive.summary[archive.summary["run"] == "*"].set_index(["filter", "role"])
+    names, shares = [], []
+    for filter in (*COMPETITORS, "bank"):
+        row = [100 * pooled[side].get((filter, role), np.nan) for role in ("train", "test") for side in ("nis_above", "nis_below")]
+        if np.isfinite(row).any():
+            names.append(bank_title(archive) if filter == "bank" else filter.replace("_", " "))
+            shares.append(row)
     figure, axes = blank(width, 2.3)
     position, shares = np.arange(len(names)), np.asarray(shares, float)
     for column, colour, label, move in ((0, MODES[0], "training", -0.19), (2, MODES[1], "held out", 0.19)):
@@ -326,21 +275,6 @@ def draw_coverage(names, shares, width):
     axes.set_ylabel("NIS below | above [%]")
     legend(axes)
     return figure
-
-
-def coverage(archive, width=COLUMN):
-    """Share of samples whose normalised innovation squared (NIS) lies above (upwards) or below (downwards) its 95 % interval; a
-    consistent filter has 2.5 % on either side."""
-    if "/evaluation/summary" not in archive:
-        raise LeftOut("the archive holds no scores")
-    pooled = archive.summary[archive.summary["run"] == "*"].set_index(["filter", "role"])
-    names, shares = [], []
-    for filter in (*COMPETITORS, "bank"):
-        row = [100 * pooled[side].get((filter, role), np.nan) for role in ("train", "test") for side in ("nis_above", "nis_below")]
-        if np.isfinite(row).any():
-            names.append(bank_title(archive) if filter == "bank" else filter.replace("_", " "))
-            shares.append(row)
-    return draw_coverage(names, shares, width)
 
 
 def transition(archive, width=COLUMN):
@@ -395,21 +329,6 @@ def finished(study):
     return table[table["status"] == "done"]
 
 
-def study_coverage(study, width=COLUMN):
-    """Share of samples whose normalised innovation squared (NIS) lies above (upwards) or below (downwards) its 95 % interval, mean over
-    the study's runs with K mixture components; a consistent filter has 2.5 % on either side."""
-    effects = study["/answers/main_effects"]
-    effects = effects[effects["key"] == "mixture.components"]
-    if effects.empty:
-        raise LeftOut("the study does not vary mixture.components")
-    mean, values = effects.set_index(["score", "value"])["mean"], list(dict.fromkeys(effects["value"]))
-    bars = [(filter.replace("_", " "), filter, values[0]) for filter in (*COMPETITORS, "combined") if f"{filter}_train_nis_above" in mean]
-    bars += [(f"K = {value}", "bank", value) for value in values]
-    shares = [[100 * mean.get((f"{filter}_{role}_{side}", value), np.nan) for role in ("train", "test") for side in ("nis_above", "nis_below")]
-              for _, filter, value in bars]
-    return draw_coverage([name for name, _, _ in bars], shares, width)
-
-
 def effects(study, width=COLUMN):
     """Effects of the varied settings on the log score: the best that each value reaches over all other settings, and the mean of its
     runs. Runs far below are outside the frame."""
@@ -438,41 +357,20 @@ def effects(study, width=COLUMN):
 
 
 def position_of(value, values):
-    """Index of a run's value in a table of effects, which has ranges such as 4..7.5 for many numbers."""
+    """Index of a run's value among the texts of a table of effects."""
     texts = [f"{value:g}", str(value)] if isinstance(value, (int, float, np.number)) else [str(value)]
-    for text in texts:
-        if text in values:
-            return values.index(text)
-    upper = [float(text.split("..")[-1]) for text in values if re.fullmatch(r"\S+\.\.\S+", text)]
-    return np.nan if not upper else min(int(np.searchsorted(upper, float(value) * (1 - 1e-3 * np.sign(float(value))))), len(upper) - 1)
-
-
-def pareto(study, width=COLUMN):
-    """Log score of the study's runs over their number of modes, and the settings (means over repeats) that no other beats with as few
-    modes. Runs far below are outside the frame."""
-    score, title = headline(study)
-    front, runs = study["/answers/pareto"], finished(study)
-    if front.empty:
-        raise LeftOut("no run has finished with a number of modes and a log score")
-    figure, axes = blank(width, 2.2)
-    axes.plot(runs["modes"], runs[score], ".", color=OTHERS, markersize=3, label="runs")
-    axes.plot(front["modes"], front[score], "o-", color=MODES[3], markersize=3.5, label="front")
-    axes.set(xlabel="modes", ylabel=title, xlim=(0.5, max(runs["modes"]) + 0.5), ylim=better_part(front[score]))
-    axes.xaxis.get_major_locator().set_params(integer=True)
-    legend(axes)
-    return figure
+    return next((values.index(text) for text in texts if text in values), np.nan)
 
 
 def draw(archive, run=None, width=COLUMN):
     """{name: figure} for which the archive has data, and {name: reason} for the others."""
-    with_states = [("estimates", estimates), ("prediction", prediction)]
     if "/answers" in archive:
-        tasks = [("coverage", study_coverage, {}), ("effects", effects, {}), ("pareto", pareto, {})]
+        tasks = [("effects", effects, {})]
     else:
         states = range(len(archive.attributes("/data")["state_names"]) if "/data" in archive else 1)
         tasks = [("local_models", local_models, {}), ("selection", selection, {})]
-        tasks += [(name + (f"_{i + 1}" if i else ""), function, {"run": run, "state": i}) for name, function in with_states for i in states]
-        tasks += [("nis", nis, {"run": run}), ("pit", pit, {}), ("coverage", coverage, {}), ("transition", transition, {})]
+        tasks += [("estimates" + (f"_{i + 1}" if i else ""), estimates, {"run": run, "state": i}) for i in states]
+        tasks += [("pit", pit, {}), ("coverage", coverage, {}), ("transition", transition, {})]
     drawn, left_out = {}, {}
     with matplotlib.rc_context(STYLE):
         for name, function, options in tasks:

@@ -13,8 +13,7 @@ Other options are passed to the program. The data root is taken from MODEBANK_DA
 
 The cache stores every finished run under a hash of the program, the configuration, the options and the sizes and times of
 the data files. A second call continues where the first one stopped. If all runs are finished, it only prints the table.
-Windows and mixture are made once per fold and shared by all rows that do not change them. This script makes no choice:
-the program makes every choice inside the training runs. Needs only Python 3.
+This script makes no choice: the program makes every choice inside the training runs. Needs only Python 3.
 """
 import concurrent.futures
 import glob
@@ -47,7 +46,6 @@ FEATURES = [
     ("the same bank in salvi2025", {"bank:filter.variant": "salvi2025"}),
     ("one Kalman filter (kf)", {"filter.variant": "kf"}),
 ]
-EARLY = ("data.", "window.", "mixture.", "job.")  # sections that windows and mixture depend on
 
 
 class Failed(RuntimeError):
@@ -107,7 +105,7 @@ def data_files(text, options):
 
 
 class Stages:
-    """Windows, mixture and the first row's bank of each fold; each is made once, at its first use."""
+    """The first row's bank of each fold, made once, at its first use."""
 
     def __init__(self, bench, folder):
         self.bench, self.folder = bench, folder
@@ -123,18 +121,11 @@ class Stages:
                 make(path)
         return path
 
-    def clustered(self, options):
-        early = {k: v for k, v in options.items() if k.startswith(EARLY)}
-        key = "cluster_" + self.bench.key(early)[:16]
-        return self.made(key, lambda path: self.bench.call("cluster", self.bench.config, *flags(early),
-                                                            "--archive.output", path))
-
     def learned(self, options):
         return self.made("bank_" + self.bench.key(options)[:16], lambda path: self.evaluate(options, path))
 
     def evaluate(self, options, path):
-        self.bench.call("evaluate", self.bench.config, *flags(options), "--archive.input", self.clustered(options),
-                        "--archive.output", path)
+        self.bench.call("run", self.bench.config, *flags(options), "--archive.output", path)
 
     def rows(self, given, feature):
         """Held-out rows of the summary, by filter."""
@@ -148,7 +139,7 @@ class Stages:
             with tempfile.TemporaryDirectory(dir=self.folder) as folder:
                 path = os.path.join(folder, "run.h5")
                 if any(k.startswith("bank:") for k in feature):
-                    self.bench.call("evaluate", self.bench.config, *flags({**given, **changed}), "--archive.bank",
+                    self.bench.call("run", self.bench.config, *flags({**given, **changed}), "--archive.bank",
                                     self.learned(given), "--archive.output", path)
                 else:
                     self.evaluate({**given, **changed}, path)
@@ -169,7 +160,8 @@ def halves(bench, given):
     """Options of the two folds: as configured, and with training and held-out runs exchanged."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "runs.h5")
-        bench.call("identify", bench.config, *flags({**{k: v for k, v in given.items() if k.startswith(("data.", "window."))}, "window.step": "100"}),
+        early = {k: v for k, v in given.items() if k.startswith(("data.", "window."))}
+        bench.call("run", bench.config, *flags({**early, "window.step": "100"}), "--until", "windows",
                    "--archive.output", path)
         runs = json.loads(bench.call("show", path, "/data/runs", "--json"))["value"]
         roles = {run["name"]: run["role"] for run in runs}

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Processor time of `modebank run` as a function of states, lags and samples: the table of docs/results/cost.md.
+"""Processor time of `modebank run` as a function of states, lags and samples: the table of docs/results/speed.md.
 
 measure_cost.py MODEBANK FOLDER [--only NAME] [--seconds N]
 

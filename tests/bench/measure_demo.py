@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""measure_demo.py PROGRAM [SEEDS]: what `modebank demo` finds beside the truth over seeds; the tables of docs/results/demo.md."""
+"""measure_demo.py PROGRAM [SEEDS]: what `modebank demo` finds beside the truth over seeds; the tables of docs/results/simulated.md."""
 import json
 import resource
 import subprocess

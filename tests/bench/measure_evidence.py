@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """How often modes of motion are reported: without modes, with one nonlinear motion, and with modes (make evidence).
 
-  measure_evidence.py build/modebank [--table docs/results/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
+  measure_evidence.py build/modebank [--table build/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
 This script simulates every system with numpy: twelve runs of 400 samples, with inputs drawn at each sample or held. Six runs
 train and six are held out, the default division of `modebank run`. Only [data] is configured. The script counts the answers

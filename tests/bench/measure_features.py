@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Which features of windows with many lags separate the modes: the table of docs/results/mixture.md.
+"""Which features of windows with many lags separate the modes: the table of docs/results/simulated.md.
 
 measure_features.py MODEBANK FOLDER [SEEDS]
 
@@ -90,8 +90,9 @@ def adjusted_rand(a, b):
 
 
 def score(program, folder, lags, length, components, modes, features, covariance):
-    subprocess.run([program, "cluster", "data.ini", "--archive.output", "c.h5", "--force", "--window.model", "varx",
-                    "--window.state_lags", str(lags), "--window.input_lags", str(lags), "--window.length", str(length),
+    subprocess.run([program, "run", "data.ini", "--until", "mixture", "--archive.output", "c.h5", "--force",
+                    "--window.model", "varx", "--window.state_lags", str(lags),
+                    "--window.input_lags", str(lags), "--window.length", str(length),
                     "--mixture.components", str(components), "--mixture.features", features,
                     "--mixture.covariance", covariance], cwd=folder, check=True, capture_output=True)
     with h5py.File(folder / "c.h5") as archive:

@@ -1,4 +1,4 @@
-// Measures how often the right number of modes is found for simulated systems (docs/results/mixture.md). Argument:
+// Measures how often the right number of modes is found for simulated systems (docs/results/simulated.md). Argument:
 // number of seeds (default 50).
 #include <fmt/format.h>
 
@@ -8,7 +8,6 @@
 
 namespace {
 
-using modebank::Criterion;
 using modebank::test::RecoveredSize;
 using modebank::test::RecoveryCase;
 

@@ -1,5 +1,5 @@
 // Measures how often the rule for additions to a model (filter/learn/left_out/rule.hpp) accepts a false and a true
-// addition (docs/results/rule.md). Prints CSV.
+// addition. Prints CSV.
 //
 //   measure_rule SEEDS [FIRST]     prints both tables, from seed FIRST (default 1) on
 //   measure_rule worth RUNS        prints the gain of each addition on RUNS runs, at sizes near those in this file

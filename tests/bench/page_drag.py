@@ -6,7 +6,7 @@ Usage: page_drag.py PROGRAM FOLDER
 Simulates one run of a million samples (two modes, two inputs of different units) and calls `PROGRAM run` and `report` once.
 Drags the view over the run in headless Chromium. Pointer events come once per frame of the screen, like those of a mouse
 that is held down. Prints the time from opening a page to its first paint, for the demo and for the million samples. The first
-paint contains the verdict and the picture of the data (a test checks this). Then prints a row per width of the view: median and
+paint contains the verdict (a test checks this). Then prints a row per width of the view: median and
 95th percentile of the intervals between frames, and of the time from an event to the picture that shows it.
 """
 import json

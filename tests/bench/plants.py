@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Simulated plants with known truth, and how often the linear stage of `modebank identify` is right about them.
+"""Simulated plants with known truth, and how often the linear stage of `modebank run` is right about them.
 
   plants.py PROGRAM [--logs 400] [--seed 1] [--kind open|loop|all] [--motions 1] [--folder build/plants] [--jobs N]
   plants.py --draw FOLDER [the same]      writes run_*.csv, log.ini and truth.json of each log, and runs nothing
@@ -253,7 +253,8 @@ def one(options, number):
 
 def identify(program, folder, truth):
     """The numbers of y and u in the archive; None if the program refuses, fails or leaves u0 out."""
-    command = [program.resolve(), "identify", "log.ini", "--archive.output", "out.h5", "--job.threads", "1"]
+    command = [program.resolve(), "run", "log.ini", "--until", "windows", "--archive.output", "out.h5",
+               "--job.threads", "1"]
     done = subprocess.run(command, cwd=folder, capture_output=True, check=False)
     if done.returncode != 0:
         return None

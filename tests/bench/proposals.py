@@ -44,7 +44,7 @@ def settings(program, files, work):
     """Exit status and settings of the configuration that `init` writes."""
     ini = work / "proposal.ini"
     ini.unlink(missing_ok=True)
-    done = subprocess.run([program, "init", *files, "-o", ini, "--yes"], cwd=work, capture_output=True, check=False)
+    done = subprocess.run([program, "init", *files, "-o", ini], cwd=work, capture_output=True, check=False)
     lines = [f"status {done.returncode}"]
     if ini.exists():
         text = ini.read_text(encoding="utf-8", errors="backslashreplace").replace(f"{work}/", "")

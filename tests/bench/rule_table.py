@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/results/rule.md from the output of measure_rule: rule_table.py CSV"""
+"""Tables from the output of measure_rule: rule_table.py CSV"""
 import collections
 import csv
 import sys

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Time and memory of long recordings and of many runs: a table for docs/results/scale.md.
+"""Time and memory of long recordings and of many runs: a table for docs/results/speed.md.
 
 scale.py MODEBANK FOLDER [--rows N] [--runs N] [--page N]
 

@@ -32,9 +32,9 @@ class Modebank:
             self("report", *archives, "-o", page, *options)
         return page
 
-    def run(self, name, config, *options, command="run"):
+    def run(self, name, config, *options):
         archive = self.work / f"{name}.h5"
-        self(command, config, "--archive.output", archive, *options)
+        self("run", config, "--archive.output", archive, *options)
         return archive
 
 
@@ -51,9 +51,9 @@ def demo_data(modebank):
     return data
 
 
-def demo(modebank, data, name, *options, command="run"):
-    quick = [] if command == "identify" else ["--mixture.restarts", "2", *QUICK]  # identify reads none of them
-    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *LAGS, *quick, *options, command=command)
+def demo(modebank, data, name, *options):
+    return modebank.run(name, modebank.source / "configs/demo.ini", "--data.root", data, *LAGS,
+                       "--mixture.restarts", "2", *QUICK, *options)
 
 
 def ice(modebank):

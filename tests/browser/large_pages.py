@@ -48,7 +48,7 @@ class LargePages(PageTest):
         told = sum("worse" not in rival["It is"][0] for rival in rivals)
         said = session.browser.run("return document.querySelector('#better .verdict').textContent")
         self.assertIn(f"{told} cannot be told" if told else "better than the next 8", said)
-        points = session.browser.run("return document.querySelector('#pareto div.plot').drawing.panels[0].marks[0].x.length")
+        points = session.browser.run("return document.querySelector('#effects div.plot').drawing.panels[0].marks[0].x.length")
         self.assertEqual(points, 200)
         accessible.assert_accessible(self)
 

@@ -128,19 +128,6 @@ class LookingAround(PageTest):
         session.browser.wait(f"return {PLOT}.timePlot.state.at === null")
         self.assert_quiet()
 
-    def test_jumps_go_to_the_worst_sample_and_to_mode_switches(self):
-        times, nis, probability = self.stored("data/time", "evaluation/bank/nis", "evaluation/bank/mode_probability")
-        self.press("Next worst sample")
-        session.browser.wait(f"return {PLOT}.timePlot.state.at !== null")
-        self.assertAlmostEqual(self.crosshair(), times[numpy.nanargmax(nis)], places=6)
-        session.browser.wait("return document.getElementById('data').textContent.includes('Worst sample 1')")
-        likeliest = probability.argmax(1)
-        switches = times[1:][numpy.diff(likeliest) != 0]
-        before = self.crosshair()
-        self.keys("n")
-        session.browser.wait(f"return {PLOT}.timePlot.state.at !== arguments[0]", before)
-        self.assertAlmostEqual(self.crosshair(), switches[switches > before + 1e-6][0], places=6)
-
     def test_a_link_restores_the_view(self):
         session.browser.run("const s = document.querySelectorAll('#data select'); s[0].selectedIndex = 2; s[0].dispatchEvent(new Event('change'));")
         session.browser.run(f"const {{state}} = {PLOT}.timePlot; return state.zoom([10, 20]).then(() => state.point(15))")

@@ -24,22 +24,20 @@ try:
     import selenium  # noqa: F401
 except ImportError as error:
     leave(f"{error.name} is absent: apt-get install python3-h5py python3-selenium")
-for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-driver"), ("pdftoppm", "poppler-utils")):
+for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-driver")):
     if not os.path.exists(f"/usr/bin/{program}"):
         leave(f"{program} is absent: apt-get install {package}")
 
 import session  # noqa: E402
 from compare_page import ComparePage, Refusals  # noqa: E402, F401
 from first_screen import FirstScreen  # noqa: E402, F401
-from index_page import IndexPage  # noqa: E402, F401
 from large_pages import LargePages  # noqa: E402, F401
 from looking_around import LookingAround  # noqa: E402, F401
 from mode_pages import ModePages  # noqa: E402, F401
-from printed import Printed  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
 
-TESTS = ["ComparePage", "FirstScreen", "IndexPage", "LookingAround", "ModePages", "Printed", "Refusals", "RunPages", "StudyPage"]
+TESTS = ["ComparePage", "FirstScreen", "LookingAround", "ModePages", "Refusals", "RunPages", "StudyPage"]
 
 if __name__ == "__main__":
     program, source, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])

@@ -30,7 +30,7 @@ class Made(dict):
         "many_modes": lambda name: archives.demo(modebank, data, name, "--mixture.components", "20"),
         "no_truth": lambda name: archives.demo(modebank, data, name, "--data.truth=", "--mixture.components", "2", "--filter.simulate", "10"),
         "none_held_out": lambda name: archives.demo(modebank, data, name, "--data.train", ",".join(f"{run:02d}" for run in range(12))),
-        "windows_only": lambda name: archives.demo(modebank, data, name, command="identify"),
+        "windows_only": lambda name: archives.demo(modebank, data, name, "--until", "windows"),
         "hostile": lambda _: archives.hostile(modebank),
         "study": lambda _: archives.study(modebank, data),
         "large_study": lambda _: archives.large_study(modebank),

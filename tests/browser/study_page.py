@@ -4,7 +4,7 @@ import h5py
 import session
 from session import PageTest
 
-STUDY_SECTIONS = ["verdict", "better", "runs", "effects", "pareto", "origin"]
+STUDY_SECTIONS = ["verdict", "better", "runs", "effects", "origin"]
 
 
 class StudyPage(PageTest):
@@ -84,16 +84,16 @@ class StudyPage(PageTest):
 
     def test_filtering_and_what_follows_it(self):
         self.open(self.page())
-        session.browser.draw_all("#pareto")
+        session.browser.draw_all("#effects")
         stored = self.stored()
-        points = "return document.querySelector('#pareto div.plot').drawing.panels[0].marks[0].x.length"
+        points = "return document.querySelector('#effects div.plot').drawing.panels[0].marks[0].x.length"
         self.assertEqual(session.browser.run(points), len(stored))
         self.filter("mixture.components", ">= 2")
         self.assertEqual(len(self.rows()), sum(stored["mixture.components"] >= 2))
         self.filter("mixture.covariance", "diag")
         wanted = (stored["mixture.components"] >= 2) & (stored["mixture.covariance"] == b"diagonal")
         self.assertEqual(sorted(self.column("bank_test_log_score")), sorted(stored["bank_test_log_score"][wanted]))
-        session.browser.wait(points + " === arguments[0]", int(sum(wanted)), what="the Pareto plot to follow")
+        session.browser.wait(points + " === arguments[0]", int(sum(wanted)), what="the effects to follow")
         self.filter("mixture.components", "1 | 3")
         self.assertEqual({row["mixture.components"][1] for row in self.rows()}, {1, 3})
         self.filter("mixture.components", "")
@@ -101,7 +101,7 @@ class StudyPage(PageTest):
         self.assertEqual(len(self.rows()), len(stored))
         self.assert_quiet()
 
-    def test_main_effects_and_front(self):
+    def test_main_effects(self):
         self.open(self.page())
         session.browser.draw_all()
         stored = self.stored()
@@ -121,10 +121,6 @@ class StudyPage(PageTest):
                     self.assertAlmostEqual(value, float(of(score[stored[key] == level])), places=10)
                 if way == 0:
                     self.assertEqual(max(shown), score.max())  # the plots agree with the verdict
-        front = session.browser.run("return document.querySelector('#pareto div.plot').drawing.panels[0].marks.find(({name}) => name === 'front').which")
-        beaten = lambda i: any((stored["modes"][j] <= stored["modes"][i]) and (stored["bank_test_log_score"][j] > stored["bank_test_log_score"][i]) for j in range(len(stored)))
-        for i in front:
-            self.assertFalse(beaten(i))
 
     def test_a_run_is_a_click_away(self):
         self.open(self.page())

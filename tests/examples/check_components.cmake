@@ -24,7 +24,11 @@ file(MAKE_DIRECTORY ${WORK}/elsewhere)
 foreach(component program development)
   run(${CMAKE_COMMAND} --install ${BUILD} --prefix ${WORK}/${component} --component ${component})
 endforeach()
-holds(program bin share/doc/modebank share/man/man1 share/bash-completion/completions share/zsh/vendor-completions share/fish/vendor_completions.d)
+find_program(help2man help2man)
+if(help2man)
+  set(manual share/man/man1)
+endif()
+holds(program bin share/doc/modebank share/bash-completion/completions ${manual})
 holds(development include/modebank lib/modebank lib/cmake/modebank share/doc/libmodebank-dev)
 
 # The program needs no other file: neither the source tree nor its prefix.

@@ -79,7 +79,7 @@ int main() try {
   const modebank::ident::Windows by_yaw_model = modebank::ident::fit_windows(runs, options.window, yaw_model);
   std::printf("first window: linear model %s = %.3f, own model decay = %.3f\n", windows.parameter_names[0].c_str(),
               windows.theta(0, 0), by_yaw_model.theta(0, 0));
-  modebank::mixture::Points points{windows.theta, {}, {}, windows.run};
+  modebank::mixture::Points points{windows.theta, {}, {}};
   points.effective_samples = static_cast<double>(windows.run.size()) / static_cast<double>(options.window.length);
   modebank::SelectionOptions few;
   few.components = {1, 2, 3, 4};  // windows over a change of ground may form their own component

@@ -93,7 +93,7 @@ inline SimulatedRun simulate_description(const filter::BankDescription& bank, Ei
     x += view(mode.A) * x + view(mode.B) * input.col(k) + view(mode.c) + draw_normal(view(mode.Q), generator);
   }
   const Eigen::VectorXd time_s = Eigen::VectorXd::LinSpaced(samples, 0.0, static_cast<double>(samples - 1));
-  result.run = {"simulated", false, to_vector(time_s), to_matrix(state), to_matrix(input), {}};
+  result.run = {"simulated", false, to_vector(time_s), to_matrix(state), to_matrix(input)};
   return result;
 }
 

@@ -1,9 +1,7 @@
-// Reads input of `track`: lines of samples, and checkpoints.
+// Reads lines of samples, the input of `track`.
 #include <cmath>
 
 #include "app/cli/track_input.hpp"
-#include "io/archive/filter_checkpoint.hpp"
-#include "modebank/base/error.hpp"
 #include "tests/fuzz/entry.hpp"
 #include "tests/io/archive/archive_fixture.hpp"
 
@@ -38,23 +36,7 @@ void track_lines(std::string_view text) {
   }
 }
 
-/// Continues from a checkpoint for a few samples. If samples are finite, estimates must be finite too.
-void resume(std::string_view text) {
-  BankFilter filter = new_filter(text.size() % 2 == 0);
-  try {
-    filter.restore(load_checkpoint(scratch_file("fuzz.json", text), "fuzz"));
-  } catch (const std::invalid_argument& error) {
-    throw DataError(error.what());
-  }
-  for (int k = 0; k < 4; ++k) {
-    const FilterEstimate& estimate =
-        filter.step(NAN, Eigen::VectorXd::Constant(1, 0.1), Eigen::VectorXd::Constant(1, 0.2));
-    require(!filter.started() || (estimate.state.allFinite() && estimate.mode_probability.allFinite()),
-            "an estimate is not finite");
-  }
-}
-
-const Entry track("track", track_lines), checkpoint("checkpoint", resume);
+const Entry track("track", track_lines);
 
 }  // namespace
 

@@ -11,7 +11,7 @@ namespace modebank::test {
 /// A run with samples 1 s apart.
 inline RecordedRun public_run(const Eigen::MatrixXd& state, const Eigen::MatrixXd& input, bool held_out = false) {
   const Eigen::VectorXd time_s = Eigen::VectorXd::LinSpaced(state.cols(), 0.0, static_cast<double>(state.cols() - 1));
-  return {"run", held_out, to_vector(time_s), to_matrix(state), to_matrix(input), {}};
+  return {"run", held_out, to_vector(time_s), to_matrix(state), to_matrix(input)};
 }
 
 /// An exact run of one state and two inputs with these parameters. Its signals are so large that it alone decides the

@@ -10,23 +10,20 @@
 namespace modebank {
 namespace {
 
-using Eigen::Index;
-
 TEST(MixtureDoor, GivesTheSameBits) {
   const Eigen::MatrixXd points = test::draw(test::three_clusters(8.0), 300, 9);
   const Eigen::MatrixXd errors = (0.05 * Eigen::Matrix2d::Identity()).reshaped().replicate(1, points.cols());
   const Eigen::VectorXd weights = Eigen::VectorXd::LinSpaced(points.cols(), 0.5, 1.5);
-  SampleDesign design{150.0, {}};
-  for (Index i = 0; i < points.cols(); ++i) design.runs.push_back(i % 6);
+  constexpr double samples = 150.0;
   for (const bool noise : {false, true}) {
     SelectionOptions options;
     options.components = {2, 3, 4};
     options.em.restarts = 2;
     options.em.noise_component = noise;
     const PointSet set(points, weights, errors);
-    const Selection internal = select(set, design, options, 7);
-    const mixture::Clusters converted = mixture::select(
-        {to_matrix(points), to_vector(weights), to_matrix(errors), design.runs, design.effective_samples}, options, 7);
+    const Selection internal = select(set, samples, options, 7);
+    const mixture::Clusters converted =
+        mixture::select({to_matrix(points), to_vector(weights), to_matrix(errors), samples}, options, 7);
     EXPECT_TRUE(test::same_bits(converted.mixture.weights, to_vector(internal.mixture.weights)));
     EXPECT_TRUE(test::same_bits(converted.mixture.means, to_matrix(internal.mixture.means)));
     ASSERT_EQ(converted.mixture.covariances.size(), internal.mixture.covariances.size());
@@ -55,7 +52,7 @@ TEST(MixtureDoor, BadArgumentsAreNamed) {
     }
     return "";
   };
-  mixture::Points bad{points, {}, {}, {}};
+  mixture::Points bad{points, {}, {}};
   bad.values.rows = 3;
   EXPECT_EQ(refusal(bad, {}), "values is 3 x 20 but holds 40 numbers");
   EXPECT_EQ(refusal({points, {1.0}, {}, {}}, {}), "20 points have 1 weights; expected one weight per point, or none");

@@ -42,7 +42,7 @@ json by_weight(const json& golden) {
 
 /// The best fit of K components.
 mixture::Clusters fit(const mixture::Points& points, Index components, EmOptions em) {
-  return mixture::select(points, {{components}, Criterion::bic, em});
+  return mixture::select(points, {{components}, em});
 }
 
 /// Fits after fewer iterations: em_test.cpp.
@@ -107,7 +107,7 @@ TEST(Mclust, MaximaAreStationaryHereAndNotHigher) {
     EXPECT_TRUE(near(points * view(responsibilities).transpose() * members.cwiseInverse().asDiagonal(), means, 1e-2));
 
     const EmOptions em{.covariance = type_of(expected["model"]), .tolerance = 1e-13, .max_iterations = 20000};
-    const mixture::Clusters found = fit({to_matrix(points), {}, {}, {}}, weights.size(), em);
+    const mixture::Clusters found = fit({to_matrix(points), {}, {}}, weights.size(), em);
     const Candidate& row = found.candidates.at(0);
     const double slack = mclust_tolerance * std::abs(row.log_likelihood);
     EXPECT_EQ(row.parameters, expected["parameters"].get<Index>());
@@ -116,7 +116,6 @@ TEST(Mclust, MaximaAreStationaryHereAndNotHigher) {
     ++same_maxima;
     EXPECT_TRUE(row.converged);
     near_golden(row.bic, "bic", -1.0);
-    near_golden(row.icl, "icl", -1.0);
     EXPECT_TRUE(near(view(found.mixture.weights), weights, 1e-4));
     EXPECT_TRUE(near(view(found.mixture.means), means, 1e-2));
   }

@@ -15,12 +15,9 @@ int main() {
 
   modebank::SelectionOptions options;
   options.components = {1, 2, 3, 4};
-  modebank::SampleDesign design;  // each point is a run of its own
-  for (Eigen::Index i = 0; i < points.cols(); ++i) design.runs.push_back(i);
-  const modebank::Selection found = modebank::select(points, design, options, 1);
+  const modebank::Selection found = modebank::select(points, 0.0, options, 1);
   for (const modebank::Candidate& row : found.candidates)
-    std::printf("K = %td: BIC %.1f, held out %.4f%s\n", row.components, row.bic, row.heldout,
-                row.selected ? "  <- selected" : "");
+    std::printf("K = %td: BIC %.1f%s\n", row.components, row.bic, row.selected ? "  <- selected" : "");
   for (Eigen::Index k = 0; k < found.mixture.components(); ++k) std::printf("weight %.3f\n", found.mixture.weights(k));
 
   const Eigen::MatrixXd memberships = modebank::responsibilities(found.mixture, points);

@@ -96,6 +96,12 @@ class Chain(ProgramTest):
             self.close(found["bank/parameter_standard_error"][k],
                        np.sqrt(scatter / (w.sum() - 3) * inverse.diagonal()), 1e-8)
 
+    def test_the_largest_number_of_components_is_the_most_modes(self):
+        for components, modes in (("1..4", 3), ("2", 2)):
+            archive = learn(self.folder, "--window.intercept=false", f"--mixture.components={components}", samples=600,
+                            grips=(0.6, 0.3, 0.1))
+            self.assertEqual(len(arrays(archive)["bank/weight"]), modes)
+
     def test_the_evaluation_is_a_textbook_imm_filters(self):
         said, names = self.of("evaluation/bank"), ("prediction", "innovation_covariance", "log_density", "pit", "state")
         for run in self.runs.values():

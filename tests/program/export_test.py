@@ -1,6 +1,7 @@
-"""The exported bank is the archive's: in JSON to the bit, and in C it says of held-out runs what `evaluate` said."""
+"""The exported bank is the archive's: in JSON to the bit, and in C it says of held-out runs what `run` said."""
 import json
 import shutil
+import statistics
 import subprocess
 import unittest
 
@@ -58,6 +59,11 @@ class Export(ProgramTest):
         bank["A"] += np.eye(bank["A"].shape[-1])  # archives hold the increment of a step
         for name, values in said.items():
             self.assertEqual(np.reshape(values, bank[name].shape).tolist(), bank[name].tolist(), name)
+        for mode, Q in zip(page["modes"], bank["Q"], strict=True):
+            np.testing.assert_allclose(mode["Q_per_s"]["value"], Q / page["dt_s"], rtol=1e-15)
+        for gate in page["gates"]:  # of one signal: the square of a normal variable
+            self.assertEqual(gate["signals"], 1)
+            self.assertAlmostEqual(gate["nis"], statistics.NormalDist().inv_cdf((1 + gate["share"]) / 2) ** 2, 9)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Files that people bring, read rightly or refused by name: what `init` proposes and what `identify` makes of it.
+"""Files that people bring, read rightly or refused by name: what `init` proposes and what `run` makes of it.
 
 Every log moves by v(k+1) = 0.9 v(k) + 0.1 u(k), so a pair of numbers shows whether rows, names and times are right.
 """
@@ -45,7 +45,8 @@ class Fields(ProgramTest):
 
     def learned(self):
         """Rows of each run and the median step of the configuration's data, whose motion must be the drive's."""
-        self.modebank("identify", "x.ini", "--archive.output", "out.h5", "--force", "--window.model", "linear",
+        self.modebank("run", "x.ini", "--until", "windows", "--archive.output", "out.h5", "--force",
+                      "--window.model", "linear",
                       "--data.missing", "gap")
         with h5py.File(self.folder / "out.h5") as file:
             data = {name: file["data"][name][()] for name in ("runs", "time", "state", "input")}
@@ -137,7 +138,7 @@ class Fields(ProgramTest):
             file["time"], file["speed"], file["throttle"] = 0.05 * np.arange(400), v[:, None, None], u[None, :, None]
             file["image"] = np.zeros((400, 2, 3))
         self.expect("sides.h5", 0.05, 370)
-        self.assertIn("image", self.modebank("init", "sides.h5", "-o", "b.ini", "--yes").stdout)
+        self.assertIn("image", self.modebank("init", "sides.h5", "-o", "b.ini").stdout)
         with h5py.File(self.folder / "rows.h5", "w") as file:
             file["log"] = np.c_[0.05 * np.arange(400), v, u].T
         self.expect("rows.h5", 0.05, 370, "log[1]", "log[2]")
@@ -221,7 +222,7 @@ class Fields(ProgramTest):
                 base.execute("INSERT INTO messages VALUES(?, ?, ?)", (number, ns, joint_state(ns, ["arm"], [value])))
         base.commit()
         base.close()
-        message = self.modebank("init", "log.db3", "-o", "log.ini", "--yes", status=1).stderr
+        message = self.modebank("init", "log.db3", "-o", "log.ini", status=1).stderr
         self.assertRegex(message, "/a/joint_states.*/b/command.*data.input")
 
     def test_joints_are_found_by_name(self):

@@ -51,12 +51,12 @@ def fisher_p(p_values):
 
 
 class Golden(ProgramTest):
-    def archive(self, command, *options, **data):
+    def archive(self, *options, **data):
         """Arrays of the archive of a configuration with these keys of [data]."""
         keys = "".join(f"{key} = {value}\n" for key, value in {"root": self.folder, **data}.items())
         (self.folder / "golden.ini").write_text(f"[data]\n{keys}[window]\n")
         out = self.folder / "golden.h5"
-        modebank(command, "golden.ini", "--archive.output", out, "--force", *options, cwd=self.folder)
+        modebank("run", "golden.ini", "--archive.output", out, "--force", *options, cwd=self.folder)
         return arrays(out)
 
     def write(self, name, x, u):
@@ -76,9 +76,18 @@ class Windows(Golden):
         x, u = np.transpose(case["state"]), np.transpose(case["input"])
         names = self.write("run_0.csv", x, u)
         self.write("run_1.csv", 2 * x, u)
-        return self.archive("identify", "--window.model=linear", f"--window.length={len(x) - 1}", "--window.step=1",
-                            "--window.loss=trivial", f"--window.prior={prior}",
-                            f"--window.intercept={intercept}", inputs="run_*.csv", state=names["x"], input=names["u"])
+        found = self.archive("--until=windows", "--window.model=linear", f"--window.length={len(x) - 1}",
+                             "--window.step=1", "--window.loss=trivial", f"--window.prior={prior}",
+                             f"--window.intercept={intercept}", inputs="run_*.csv", state=names["x"], input=names["u"])
+        about_zero = np.eye(x.shape[1] + u.shape[1] + (intercept == "true"))
+        if intercept == "true":
+            self.close(found["windows/centre"], np.concatenate([x.mean(axis=0), u.mean(axis=0)]), 1e-12)
+            about_zero[-1, :-1] = -found["windows/centre"]
+        about_zero = np.kron(np.eye(x.shape[1]), about_zero)
+        for path in ("windows/global", "windows"):
+            found[f"{path}/parameters"] = found[f"{path}/parameters"] @ about_zero.T
+            found[f"{path}/covariance"] = about_zero @ found[f"{path}/covariance"] @ about_zero.T
+        return found
 
     def test_global_model_is_statsmodels(self):
         for name, intercept in (("single_state", "false"), ("two_states", "true")):
@@ -112,7 +121,7 @@ class Windows(Golden):
                 y[17, 1] = np.nan if r == 2 else y[17, 1]
                 names = self.write(f"run_{r}.csv", y, u)
                 runs.append((y, u))
-            said = self.archive("identify", "--window.loss=trivial", "--window.intercept=true", words, test=7,
+            said = self.archive("--until=windows", "--window.loss=trivial", "--window.intercept=true", words, test=7,
                                 inputs="run_*.csv", state=names["x"], input=names["u"], missing="predict")
             with self.subTest(delay=delay, words=words):
                 self.check_scores(said["structure/scores"], runs[:7], first, most)
@@ -150,8 +159,8 @@ class Windows(Golden):
         x, u = np.full((100, 1), 1e3), 1e9 * np.random.default_rng(1).uniform(-1, 1, (100, 2))
         x[50], u[50] = x[50] + 1e-6, u[49]
         self.write("still.csv", x, u)
-        found = self.archive("identify", "--window.model=linear", inputs="*.csv", state=names["x"], input=names["u"],
-                             train="still")
+        found = self.archive("--until=windows", "--window.model=linear", "--window.intercept=false", inputs="*.csv",
+                             state=names["x"], input=names["u"], train="still")
         runs, lags = (rows(found[f"residual_tests/{table}"], model="global") for table in ("runs", "lags"))
         lags = rows(lags, run="all")
         self.assertEqual(len(lags) - 1, case["lags"])
@@ -168,7 +177,7 @@ class Banks(Golden):
         for i, run in enumerate(case["runs"]):
             names = self.write(f"{i}_train.csv", run["x"], run["u"])
             self.write(f"{i}_test.csv", run["x"], run["u"])
-        return self.archive("run", "--window.model=linear", *QUICK, inputs="*.csv", state=names["x"],
+        return self.archive("--window.model=linear", *QUICK, inputs="*.csv", state=names["x"],
                             input=names["u"], train=", ".join(f"{i}_train" for i in range(len(case["runs"]))))
 
     def test_noise_only_is_hubers_regression(self):
@@ -216,7 +225,7 @@ class Imports(Golden):
         (self.folder / "x.csv").write_text((GOLDEN / "interpolation_knots.csv").read_text())
         lines = [f"{row['time'].item()!r},{k % 3}" for k, row in enumerate(inside)]
         (self.folder / "u.csv").write_text("\n".join(["time,u", *lines, ""]))
-        found = self.archive("identify", "--window.model=linear", inputs="u.csv", states="x.csv", state="value",
+        found = self.archive("--until=windows", "--window.model=linear", inputs="u.csv", states="x.csv", state="value",
                              input="u")
         order = np.argsort(found["data/time"])  # gaps split the run
         self.close(found["data/state"][order], inside["value"], 1e-14)
@@ -231,12 +240,13 @@ class RealData(Golden):
 
     def drive(self, *options, **data):
         """Blocks of the Husky under random commands, all of which train. These tests need few windows."""
-        return self.archive("identify", "--window.length=100", "--window.step=100", *options,
+        return self.archive("--until=windows", "--window.length=100", "--window.step=100", *options,
                             train=", ".join(map(str, range(201))), **{**self.DRIVE, **data})
 
     def test_the_robot_arm_is_numpys(self):
         """A text without header and times, in exponents (DaISy)."""
-        found = self.archive("identify", "--window.model=linear", root=DATA, inputs="sysid_classic/robot_arm.dat",
+        found = self.archive("--until=windows", "--window.model=linear", root=DATA,
+                             inputs="sysid_classic/robot_arm.dat",
                              time="", rate_hz=1, input="c1", state="c2", split="last 50 %")
         values, read = np.loadtxt(DATA / "sysid_classic/robot_arm.dat"), np.c_[found["data/input"], found["data/state"]]
         first, second = found["data/runs"]["samples"]  # samples between them are dropped
@@ -246,7 +256,7 @@ class RealData(Golden):
     def test_ice_is_numpys(self):
         expected = np.genfromtxt(GOLDEN / "ice_import.csv", delimiter=",", names=True, dtype=None, encoding=None)
         for train, transitions in ({}, 2636), ({"train": "02, 04, 06, 08, 10, 12"}, 2921):  # method.md, section 7
-            found = self.archive("identify", "--window.model=linear", **self.ICE, **train)
+            found = self.archive("--until=windows", "--window.model=linear", **self.ICE, **train)
             runs = found["data/runs"]
             self.assertEqual(sum(rows(runs, role="train")["samples"] - 1), transitions)
         self.assertEqual(len(runs), len(expected))

@@ -68,8 +68,8 @@ class Mistakes(ProgramTest):
         shutil.copy(self.folder / "run_01.csv", self.folder / "log.csv")
         for words, outputs in (("predict a.h5 --data.inputs log.csv --samples 5 -o", ("log.csv", "a.h5", "test.ini")),
                                ("report a.h5 -o", ("a.h5", "test.ini")),
-                               ("init log.csv --yes --force -o", ("log.csv", "a.h5")),
-                               ("init log.csv --yes -o", ("test.ini",)),
+                               ("init log.csv --force -o", ("log.csv", "a.h5")),
+                               ("init log.csv -o", ("test.ini",)),
                                ("export a.h5 --force --to json -o", ("a.h5", "log.csv")),
                                ("run test.ini --force --archive.output", ("test.ini", "run_01.csv", "log.csv"))):
             for output in outputs:

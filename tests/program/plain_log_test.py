@@ -3,7 +3,9 @@
 Every log is v(k+1) = level + a (v(k) - level) + (1 - a) gain u(k+1-delay) + w(k), y(k) = v(k) + r(k), so gain and 63 %
 response time are known in closed form: dead time included, the response passes 1 - 1/e between two samples.
 """
+import itertools
 import math
+import re
 
 from program import ProgramTest, attributes, h5py, main, modebank, np
 
@@ -44,7 +46,9 @@ class PlainLogs(ProgramTest):
         """Attributes of /structure and arrays of /baseline."""
         files = sorted(path.name for path in self.folder.glob("run_*.csv"))
         modebank("init", *files, "-o", "x.ini", "--force", cwd=self.folder)
-        modebank("identify", "x.ini", "--archive.output", "out.h5", "--force", *words, cwd=self.folder)
+        done = modebank("run", "x.ini", "--until", "windows", "--archive.output", "out.h5", "--force", *words,
+                        cwd=self.folder)
+        self.told = " ".join(done.stdout.split())
         with h5py.File(self.folder / "out.h5") as file:
             single = {name: item[()] for name, item in file["baseline"].items() if hasattr(item, "dtype")}
         return attributes(self.folder / "out.h5", "structure"), single
@@ -65,6 +69,7 @@ class PlainLogs(ProgramTest):
         self.near(single, "steady_gain", 0.8)
         self.near(single, "response_time_s", response_time(60, 3, 1))
         np.testing.assert_allclose(single["R"], 0.01, rtol=0.25)
+        self.assertNotIn("doubt", self.told)
 
     def test_two_inputs_with_their_own_delays(self):
         for run in range(RUNS):
@@ -77,15 +82,79 @@ class PlainLogs(ProgramTest):
         np.testing.assert_allclose(single["steady_gain"][0, 0], [2.0, -1.0], rtol=0.05)
 
     def test_a_level_that_wanders_is_taken_in_differences(self):
+        levels = []
         for run in range(RUNS):
             draw = np.random.default_rng(100 + run)
             u = held(draw, SAMPLES, 20, 90, [0, 10, 20, 30, 40])
             wander = np.cumsum(0.05 * draw.standard_normal(SAMPLES)) + 5 * draw.standard_normal()
             y = plant(draw, u, 30, 0.8, 2, 20, (0.0, 0.1)) + wander
             self.write(run, 1, "time,temperature_c,heater_w", y, u)
+            levels.append(wander[SAMPLES // 2:])
         structure, single = self.learned()
         self.assertEqual(structure["differences"], 1)
         self.near(single, "steady_gain", 0.8, 0.2)
+        deviations = [np.std(three) for three in itertools.combinations(levels, 3)]  # three runs train
+        told = re.search(r"the level of temperature_c wanders or differs by run \(sd ([.\d]+)", self.told)
+        self.assertGreater(float(told[1]), 0.8 * min(deviations))
+        self.assertLess(float(told[1]), 1.2 * max(deviations))
+
+    def test_the_screen_has_the_operating_point_and_names_an_input_that_was_left_out(self):
+        means = []
+        for run in range(RUNS):
+            draw = np.random.default_rng(300 + run)
+            u, v = (held(draw, 400, 10, 60, values) for values in ([-1, 0, 1], [-10, 0, 10]))
+            y = plant(draw, u, 20, 2, 1, 10, (0.02, 0.05)) + plant(draw, v, 20, 0.02, 2, 0, (0, 0))
+            self.write(run, 0.1, "time,altitude_m,thrust_n,collective_pct,battery_v", y, u, v,
+                       np.cumsum(draw.standard_normal(400)))
+            means.append(np.mean(y))
+        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
+        told = modebank("run", *files, "--archive.output", "out.h5", "--bank.refine", "none", cwd=self.folder).stdout
+        told = " ".join(told.split())
+        gained = re.search(r"collective_pct also moves altitude_m \((\d+) nats\): "
+                           "data.input = thrust_n, collective_pct;", told)
+        self.assertGreater(int(gained[1]), 6)
+        self.assertNotIn("battery_v also moves", told)
+        self.assertIn("collective_pct also moves altitude_m", (self.folder / "out.ini").read_text())
+        point = re.search(r"means: altitude_m ([.\d]+)[^;]*; altitude_m ([.\d]+)[^;]* at zero input", told)
+        self.assertTrue(min(means) <= float(point[1]) <= max(means), told)
+        self.assertAlmostEqual(float(point[2]), 10, delta=0.5)
+
+    def test_an_integrator_is_told_by_its_slope_and_dead_time(self):
+        """A speed that follows the input with a lag of 8 samples, and its sum, which alone is measured."""
+        for run in range(RUNS):
+            draw = np.random.default_rng(400 + run)
+            u = held(draw, SAMPLES, 10, 40, [-1, 0, 1])
+            a, speed, y = math.exp(-1 / 8), 0.0, np.zeros(SAMPLES)
+            for k in range(1, SAMPLES):
+                y[k] = y[k - 1] + 0.05 * speed
+                speed = a * speed + (1 - a) * 0.5 * u[k] + 0.002 * draw.standard_normal()
+            self.write(run, 0.05, "time,position_m,motor_v", y + 0.002 * draw.standard_normal(SAMPLES), u)
+        self.learned()
+        told = re.search(r"position_m per motor_v: integrates ([.\d]+)\D* per s after ([.\d]+) s, or settles",
+                         self.told)
+        self.assertAlmostEqual(float(told[1]), 0.5, delta=0.05)
+        self.assertAlmostEqual(float(told[2]), 0.05 * (a / (1 - a)), delta=0.1)
+
+    def test_help_finds_the_constant_by_other_words(self):
+        for words in ("offset", "bias", "operating point"):
+            self.assertIn("--window.intercept", modebank("help", words).stdout)
+
+    def test_delay_0_below_the_sensor_noise_is_a_doubt(self):
+        """A controller of the measured speed, whose set point is smooth: within a sample it gives the noise away."""
+        for run in range(RUNS):
+            draw, v = np.random.default_rng(500 + run), 2.0
+            y, u = np.zeros(SAMPLES), np.zeros(SAMPLES)
+            for k in range(SAMPLES):
+                y[k] = v + 0.05 * draw.standard_normal()
+                u[k] = 2 * (2 + math.sin(0.013 * k + run) + 0.5 * math.sin(0.05 * k) - y[k])
+                v = 0.9 * v + 0.1 * u[k] + 0.02 * draw.standard_normal()
+            self.write(run, 0.05, "time,speed,throttle", y, u)
+        self.learned("--data.input", "throttle")
+        gained = re.search(r"throttle of the same sample would gain (\d+) nats", self.told)
+        self.assertGreater(int(gained[1]), 6)
+        done = modebank("run", "x.ini", "--until", "windows", "--archive.output", "out.h5", "--force", "--data.input",
+                        "throttle", "--window.model", "auto", "--window.input_delay", "0", cwd=self.folder)
+        self.assertRegex(" ".join(done.stdout.split()), "speed is predicted within .* below its sensor noise of 0.0[3-6]")
 
     def loop(self, moves):
         """Speed under a controller of the logged set point, throttle = 2 (set point - speed)."""

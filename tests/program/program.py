@@ -94,7 +94,7 @@ def write_runs(folder, samples=120, states=("wz",), memory=0.6, grips=(0.6, 0.2)
     for run in (0, 1):
         draw, k = np.random.default_rng(run + 1), np.arange(samples)
         u, x = draw.uniform(-0.5, 0.5, (samples, 2)), np.zeros((samples, len(states)))
-        for i, grip in enumerate(np.take(grips, k[:-1] // stretch % 2)):
+        for i, grip in enumerate(np.take(grips, k[:-1] // stretch % len(grips))):
             x[i + 1] = memory * x[i] + grip * (u[i, 1] - u[i, 0]) + draw.uniform(-0.005, 0.005, len(states))
         values = [np.where(holes & (k > 9) & (k % 7 == place), "", column.astype(str))
                   for place, column in enumerate([*x.T, *u.T])]

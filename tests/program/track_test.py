@@ -1,4 +1,4 @@
-"""The live filter says of each sample what `evaluate` said: of lines and files, in Python, late and missing."""
+"""The live filter says of each sample what `run` said: of lines and files, in Python, late and missing."""
 import csv
 import re
 

@@ -1,4 +1,4 @@
-"""docs/howto/any_reader.md: its lines run unchanged, and the program prints them when it refuses such a file. Stubs
+"""docs/howto/formats.md: its lines run unchanged, and the program prints them when it refuses such a file. Stubs
 with the readers' interfaces stand in for the readers, which Debian has no packages of."""
 import os
 import pathlib
@@ -17,7 +17,7 @@ import pandas
 import modebank
 from simulated import QUICK, SOURCE
 
-PAGE = (SOURCE / "docs/howto/any_reader.md").read_text(encoding="utf-8")
+PAGE = (SOURCE / "docs/howto/formats.md").read_text(encoding="utf-8")
 BLOCKS = dict(zip(("px4", "ardupilot", "parquet", "influxdb", "mcap"), re.findall(r"^```python\n(.*?)^```", PAGE, re.M | re.S)))
 TRUE_DECAY = 0.7
 RUN = modebank.run

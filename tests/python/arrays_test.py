@@ -303,8 +303,8 @@ class Mixtures(unittest.TestCase):
         self.assertAlmostEqual(selected["log_likelihood"].item(), density.sum(), 4)
 
     def test_mistakes(self):
-        with self.assertRaisesRegex(modebank.ConfigurationError, "mixture.criterion"):
-            modebank.fit_mixture(np.zeros((10, 2)), criterion="best")
+        with self.assertRaisesRegex(modebank.ConfigurationError, "mixture.covariance"):
+            modebank.fit_mixture(np.zeros((10, 2)), covariance="best")
 
 
 if __name__ == "__main__":

@@ -20,7 +20,7 @@ if DRAWS:
 
 NORMAL_975 = 1.959963984540054  # quantile of the standard normal distribution (any table)
 CHI_SQUARE_2_95 = 5.991464547107979  # -2 ln 0.05
-RUN_FIGURES = {"local_models", "selection", "estimates", "prediction", "nis", "pit", "coverage", "transition"}
+RUN_FIGURES = {"local_models", "selection", "estimates", "pit", "coverage", "transition"}
 
 
 def line(axes, label):
@@ -66,22 +66,16 @@ class Figures(unittest.TestCase):
         drawn, left_out = figures.draw(self.archive)
         self.assertEqual((set(drawn), left_out), (RUN_FIGURES, {}))
         time, state = self.file["data/time"][self.rows], self.file["data/state"][self.rows, 0]
-        nis = line(drawn["nis"].axes[0], figures.bank_title(self.archive))
-        np.testing.assert_array_equal(nis.get_xdata(), time)
-        np.testing.assert_array_equal(nis.get_ydata(), self.bank["nis"])
         half = NORMAL_975 * np.sqrt(self.bank["innovation_covariance"][:, 0, 0])
-        for name, axes in (("estimates", 0), ("prediction", 1)):
-            axes = drawn[name].axes[axes]
-            np.testing.assert_array_equal(line(axes, "measured").get_ydata(), state)
-            (band,) = axes.collections
-            low, high = (np.nanmin(band.get_paths()[0].vertices[:, 1]), np.nanmax(band.get_paths()[0].vertices[:, 1]))
-            np.testing.assert_allclose([low, high], [np.nanmin(self.bank["prediction"][:, 0] - half), np.nanmax(self.bank["prediction"][:, 0] + half)], rtol=1e-12)
-        (outside,) = [line for line in drawn["prediction"].axes[1].lines if line.get_label().startswith("outside")]
-        np.testing.assert_array_equal(outside.get_xdata(), time[np.abs(self.bank["innovation"][:, 0]) > half])
-        np.testing.assert_array_equal(line(drawn["prediction"].axes[0], "cmd_velL").get_ydata(), self.file["data/input"][self.rows, 0])
+        axes = drawn["estimates"].axes[0]
+        np.testing.assert_array_equal(line(axes, "measured").get_xdata(), time)
+        np.testing.assert_array_equal(line(axes, "measured").get_ydata(), state)
+        (band,) = axes.collections
+        low, high = (np.nanmin(band.get_paths()[0].vertices[:, 1]), np.nanmax(band.get_paths()[0].vertices[:, 1]))
+        np.testing.assert_allclose([low, high], [np.nanmin(self.bank["prediction"][:, 0] - half), np.nanmax(self.bank["prediction"][:, 0] + half)], rtol=1e-12)
 
     def test_mode_probabilities_are_stacked_in_order_of_use(self):
-        figure = figures.draw(self.archive)[0]["nis"]
+        figure = figures.draw(self.archive)[0]["estimates"]
         told, others = figures.modes_by_use(self.archive)
         use = self.bank["mode_probability"]
         table = self.file["evaluation/diagnostics"][:]
@@ -122,46 +116,43 @@ class Figures(unittest.TestCase):
                         "--study.output", study], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         done = self.draw(study, "-o", self.scratch / "of_study")
         self.assertEqual(done.returncode, 0, done.stderr)
-        self.check_files(self.scratch / "of_study", {"coverage", "effects", "pareto"})
+        self.check_files(self.scratch / "of_study", {"effects"})
         drawn = figures.draw(modebank.Archive(study / "study.h5"))[0]
         with h5py.File(study / "study.h5") as file:
-            effects, front, runs = file["answers/main_effects"][:], file["answers/pareto"][:], file["study"][:]
+            effects, runs = file["answers/main_effects"][:], file["study"][:]
         of = {(row["key"], row["value"], row["score"]): row for row in effects}
         best = [of[b"window.length", value, b"bank_test_log_score"]["best"] for value in (b"20", b"30")]
         axes = drawn["effects"].axes[1]
         np.testing.assert_array_equal(line(axes, "best").get_ydata(), best)
         for value, run in zip(line(axes, "runs").get_xdata(), runs):
             self.assertEqual((20, 30)[int(value)], float(run["window.length"]))
-        np.testing.assert_array_equal(line(drawn["pareto"].axes[0], "front").get_ydata(), front["bank_test_log_score"])
-        bars = drawn["coverage"].axes[0].containers[2]
-        self.assertAlmostEqual(bars[-1].get_height(), 100 * of[b"mixture.components", b"2", b"bank_test_nis_above"]["mean"])
 
     def test_colours_are_the_pages(self):
         palette = json.loads((SOURCE / "app/report/web/palette.json").read_text(encoding="utf-8"))
-        self.assertEqual((figures.MODES, figures.OUTSIDE), (palette["modes"], palette["outlier"]))
+        self.assertEqual(figures.MODES, palette["modes"])
         for name, colour in figures.FILTERS.items():
             self.assertEqual(palette["filters"][name], colour, name)
 
-    def test_values_find_their_range(self):
-        self.assertEqual([figures.position_of(value, ["2..4.5", "4.6..9", "-3"]) for value in (2.0, 4.5, 8.9)], [0, 0, 1])
+    def test_values_find_their_place(self):
         self.assertEqual([figures.position_of(value, ["full", "20"]) for value in ("full", 20, 20.0)], [0, 1, 1])
 
     def test_names_are_text(self):
         state = "_$\\frac{<w>$&%"
         runs = {name: [part.rename(columns={"wz": state}) for part in parts] for name, parts in frames().items()}
         archive = modebank.run(runs, state=state, input=COLUMNS["input"], **QUICK)
-        figure = figures.draw(archive)[0]["prediction"]
+        figure = figures.draw(archive)[0]["estimates"]
         figure.savefig(self.scratch / "names.svg")
         self.assertIn("_$\\frac{&lt;w&gt;$&amp;%", (self.scratch / "names.svg").read_text(encoding="utf-8"))
 
     def test_what_is_missing_is_named(self):
         only_windows = self.scratch / "windows.h5"
-        subprocess.run([os.environ["MODEBANK_PROGRAM"], "identify", SOURCE / "configs/demo.ini", "--data.root", folder(), "--archive.output", only_windows],
+        subprocess.run([os.environ["MODEBANK_PROGRAM"], "run", SOURCE / "configs/demo.ini", "--until", "windows",
+                        "--data.root", folder(), "--archive.output", only_windows],
                        check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         drawn, left_out = figures.draw(modebank.Archive(only_windows))
         self.assertEqual(drawn, {})
         self.assertEqual(left_out["local_models"], "the archive holds no mixture")
-        self.assertEqual(left_out["nis"], "the archive holds no evaluation of a bank")
+        self.assertEqual(left_out["estimates"], "the archive holds no evaluation of a bank")
         self.assertEqual(left_out["coverage"], "the archive holds no scores")
         unknown = self.draw(self.archive.path, "-o", self.scratch / "none", "--run", "17")
         self.assertEqual(unknown.returncode, 1)

@@ -21,7 +21,7 @@ struct FittedTheta {
 double region_degrees_of_freedom(const FittedTheta& fit);
 
 /// The ellipsoid that contains the true theta with probability `level`. With a sandwich covariance of several states,
-/// it is too small unless L is large compared with p (docs/explanation/uncertainty.md). In that case use the parameters
+/// it is too small unless L is large compared with p (docs/explanation/windows.md). In that case use the parameters
 /// of each state separately.
 struct ConfidenceRegion {
   Eigen::VectorXd center;      ///< p, theta

@@ -13,8 +13,8 @@ namespace modebank::test {
 inline RecordedRuns recorded_runs(const Recording& recording) {
   RecordedRuns result{{}, names_of(recording.states), names_of(recording.inputs)};
   for (const Trajectory& run : recording.runs)
-    result.runs.push_back({run.run, run.role == Role::test, to_vector(run.time_s), to_matrix(run.state),
-                           to_matrix(run.input), to_vector(run.weight)});
+    result.runs.push_back(
+        {run.run, run.role == Role::test, to_vector(run.time_s), to_matrix(run.state), to_matrix(run.input)});
   return result;
 }
 

@@ -20,6 +20,7 @@ class LogConfiguration {
 
   /// Sets a key of another section than [data], or changes its reason. An empty `value` writes only a comment.
   void set(const std::string& key, const std::string& value, const std::string& why);
+  void doubt(const std::string& text) { proposal_.doubt(text); }
   /// Changes the reason of an existing key.
   void explain(const std::string& key, const std::string& why);
 

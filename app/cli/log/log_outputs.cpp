@@ -7,7 +7,7 @@
 #include <string>
 
 #include "app/cli/log/log_sets.hpp"
-#include "app/config/configuration_output.hpp"
+#include "app/config/config_file.hpp"
 #include "app/report/page/write_page.hpp"
 #include "ident/base/printable.hpp"
 #include "modebank/base/error.hpp"

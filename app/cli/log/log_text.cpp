@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "app/text/first_screen.hpp"
-#include "app/text/screen_labels.hpp"
 #include "app/text/terminal.hpp"
 #include "ident/base/printable.hpp"
 
@@ -69,7 +68,7 @@ std::string runs_text(const std::vector<FileSet>& sets, const Proposal& proposal
 std::string paragraph(const std::string& label, const std::string& text) {
   const int width = standard_output().width;
   const int columns = width > 0 ? std::min(width, screen_columns) : screen_columns;
-  return wrapped(padded_label(label) + printable_name(text), columns) + "\n";
+  return wrapped(fmt::format("{:<10}{}", label, printable_name(text)), columns) + "\n";
 }
 
 std::string taken_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,

@@ -6,6 +6,7 @@
 #include <boost/algorithm/string/trim.hpp>
 #include <filesystem>
 
+#include "app/cli/acting_doubts.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/init_trial.hpp"
 #include "app/cli/log/joined_inputs.hpp"
@@ -14,13 +15,12 @@
 #include "app/cli/log/log_sets.hpp"
 #include "app/cli/log/log_text.hpp"
 #include "app/cli/log/same_runs.hpp"
-#include "app/config/configuration_output.hpp"
+#include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/init/init_json.hpp"
 #include "app/init/survey_set.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/write_page.hpp"
-#include "app/text/screen_labels.hpp"
 #include "app/text/structure_text.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
@@ -39,8 +39,7 @@ bool is_log(const fs::path& path) {
 /// Throws for keys that `run LOG` itself sets from the logs.
 void refuse_keys(const KeyValues& overrides) {
   for (const auto& [key, value] : overrides)
-    for (const char* const decided :
-         {"data.root", "data.inputs", "data.states", "data.truth", "archive.input", "archive.bank"})
+    for (const char* const decided : {"data.root", "data.inputs", "data.states", "data.truth", "archive.bank"})
       if (key == decided)
         throw ConfigurationError(fmt::format(
             "--{}: the logs that `modebank run LOG...` names decide that; write a configuration for it: modebank init "
@@ -78,6 +77,11 @@ LookedInto look_into(std::vector<FileSet> sets) {
   return logs;
 }
 
+bool states_inputs(const CommandLine& line) {
+  return std::any_of(line.overrides.begin(), line.overrides.end(),
+                     [](const auto& each) { return each.first == "data.input"; });
+}
+
 LogConfiguration configure(const CommandLine& line, const LookedInto& logs, const fs::path& target,
                            const fs::path& archive) {
   const fs::path folder = fs::absolute(target).lexically_normal().parent_path();
@@ -87,9 +91,7 @@ LogConfiguration configure(const CommandLine& line, const LookedInto& logs, cons
   take_data_keys(line.overrides, proposal);
   state_values(proposal);
   make_it_run(proposal, target);
-  const bool stated = std::any_of(line.overrides.begin(), line.overrides.end(),
-                                  [](const auto& each) { return each.first == "data.input"; });
-  if (!line.dry_run) leave_out_joined_inputs(target, archive, line.typed, stated, proposal);
+  if (!line.dry_run) leave_out_joined_inputs(target, archive, line.typed, states_inputs(line), proposal);
   LogConfiguration configuration(std::move(proposal), line.typed);
   take_other_keys(line.overrides, configuration);
   return configuration;
@@ -122,8 +124,8 @@ void write_page_of(const Archive& archive, const LogOutputs& outputs, const Comm
 }
 
 std::string written_text(const LogOutputs& outputs) {
-  return fmt::format("{}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n",
-                     padded_label("files"), outputs.page.string(), outputs.configuration.string());
+  return fmt::format("{:<10}{} opens in a browser; {} has every decision, and `modebank run` repeats it\n", "files",
+                     outputs.page.string(), outputs.configuration.string());
 }
 
 }  // namespace
@@ -131,6 +133,7 @@ std::string written_text(const LogOutputs& outputs) {
 bool names_logs(const std::vector<std::string>& files) { return std::any_of(files.begin(), files.end(), is_log); }
 
 Result do_run_log(const CommandLine& line) {
+  if (!line.until.empty()) throw ConfigurationError("--until needs a configuration; write one: modebank init LOG...");
   refuse_keys(line.overrides);
   std::vector<FileSet> sets = nameable_sets(line.files);
   const LogOutputs outputs = log_outputs(line, sets);
@@ -143,6 +146,13 @@ Result do_run_log(const CommandLine& line) {
   if (line.dry_run) return result;
   const OpenArchive opened(outputs.archive);
   const Archive archive = read_archive(opened, Evaluations::in_file);
+  for (const nlohmann::json& doubt : result.members["doubts"]) configuration.doubt(doubt);
+  if (!states_inputs(line))
+    for (const std::string& doubt : left_channel_doubts(
+             archive, configuration.config(outputs.configuration, outputs.archive), configuration.proposal().left)) {
+      configuration.doubt(doubt);
+      result.text += paragraph("doubt", doubt);
+    }
   write_page_of(archive, outputs, line);
   explain_found(archive, configuration);
   replace_file(final_target(outputs.configuration), {configuration.text()});

@@ -159,10 +159,6 @@ std::vector<Option> data_options() {
           .touch("only for simulated data or an external reference (motion capture): estimates are compared with it, "
                  "nothing learns from it",
                  data),
-      text("data.weight", "a column name",
-           "weight >= 0 of the transition that ends in each sample; 0 leaves it out. Empty: all weights are 1",
-           MODEBANK_FIELD(data.weight))
-          .touch("rarely: when you know that some samples are worse than others", data),
       text("data.label", "a column name",
            "column with a known class of each sample, such as the ground: text or whole numbers. A missing label "
            "repeats the one before. Modes are compared with it (/evaluation/confusion); empty: none",
@@ -176,7 +172,7 @@ std::vector<Option> data_options() {
           .touch("when the log has no units", data),
       text("data.input_unit", "units", "units of the inputs, one per input or one for all",
            MODEBANK_FIELD(data.input_unit))
-          .touch("when the log has no units; `export --to ros2` needs m/s and rad/s", data),
+          .touch("when the log has no units", data),
       text("data.time", "one column name, or two of a stamp in two parts",
            "column of the times: numbers or text. In a recording, time is the header's stamp, else the time of "
            "receipt; receive_time is always the time of receipt. Empty: row k is at k / rate_hz",

@@ -6,7 +6,8 @@ std::vector<Option> mixture_options() {
   using enum Stage;
   return {
       numeric("mixture.components", each(at_least(1)), "",
-              "numbers of components to try: a number, a range such as 1..12, or a list",
+              "numbers of components to try: a number, a range such as 1..12, or a list. BIC chooses; of more than "
+              "100,000 windows it uses 50,000",
               MODEBANK_FIELD(mixture.selection.components))
           .touch(
               "when the chosen number lies at the end of the range: a wider range; a single number, to repeat a study",
@@ -14,11 +15,6 @@ std::vector<Option> mixture_options() {
       words("mixture.covariance", "covariance of each component: full or diagonal matrices",
             MODEBANK_FIELD(mixture.selection.em.covariance))
           .touch("diagonal, when there are few windows for the number of parameters", mixture),
-      words("mixture.criterion",
-            "criterion that chooses the number of components; of more than 100,000 windows it uses 50,000",
-            MODEBANK_FIELD(mixture.selection.criterion))
-          .touch("rarely: for studies of the mixture. A refined bank chooses its number of modes by runs left out",
-                 mixture),
       words("mixture.features",
             "features of a window that are clustered. parameters: its coefficients. parameters+noise: also the "
             "logarithms of its noise variances. one_lag: both, from a fit of the window with one lag. auto: "

@@ -87,6 +87,7 @@ Option intercept_option() {
                        "the training runs",
                        MODEBANK_FIELD(window.intercept));
   result.range += " | auto";
+  result.also = {"offset", "bias", "operating point"};
   result.set = [set = result.set](Config& config, const std::string& text) {
     config.structure.automatic_intercept = text == "auto";
     set(config, text == "auto" ? "false" : text);

@@ -69,7 +69,7 @@ std::string with(std::string source, const std::string& file, const std::string&
 CFiles to_c(const ExportedBank& exported, const std::string& stem) {
   refuse_what_c_lacks(exported);
   // A file may be called double.c, but its identifiers must not be keywords.
-  const std::string prefix = identifiers({boost::algorithm::to_lower_copy(stem)}, Language::c).front();
+  const std::string prefix = identifiers({boost::algorithm::to_lower_copy(stem)}).front();
   const std::string header = with(named(assets::filter_h(), prefix), "bank_sizes.h",
                                   c_form::bank_sizes(exported, boost::algorithm::to_upper_copy(prefix)));
   const std::string source = with(with(named(assets::filter_c(), prefix), "filter.h", "#include \"" + stem + ".h\"\n"),

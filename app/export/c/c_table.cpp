@@ -35,12 +35,12 @@ std::string places(const std::string& comment, const std::string& prefix, const 
     names.push_back(channel.name);
     remarks.push_back(channel.name + " [" + (channel.unit.empty() ? "unit not stated" : channel.unit) + "]");
   }
-  return enumeration(comment, prefix, identifiers(names, Language::c), remarks);
+  return enumeration(comment, prefix, identifiers(names), remarks);
 }
 
 /// One enumerator per mode. The enumerator of a mode without a name contains the mode's number.
 std::string modes(const ExportedBank& exported, const std::string& prefix) {
-  std::vector<std::string> names = identifiers(exported.mode_names, Language::c);
+  std::vector<std::string> names = identifiers(exported.mode_names);
   for (std::size_t k = 0; k < names.size(); ++k)
     if (exported.mode_names[k] == fmt::format("mode {}", k)) names[k] = std::to_string(k);
   std::vector<std::string> remarks = exported.mode_names;

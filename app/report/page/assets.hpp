@@ -10,7 +10,6 @@ std::string_view page_css();
 std::string_view run_js();      ///< script of the page of a run
 std::string_view study_js();    ///< script of a study's page
 std::string_view compare_js();  ///< script of the page that compares runs
-std::string_view index_js();    ///< script of a folder's index page
 std::string_view terms_json();  ///< definitions of all terms, for pages and for `help`
 
 // Configurations of the demo.

@@ -51,14 +51,6 @@ Eigen::MatrixXd mode_probability(const FilterEvaluation& evaluation, std::size_t
   return probability;
 }
 
-/// Sums the probabilities of the modes in each group. Without groups, the probabilities stay unchanged.
-Eigen::MatrixXd grouped(const Eigen::MatrixXd& probability, const std::vector<Index>& groups) {
-  if (groups.empty() || std::ssize(groups) != probability.rows()) return probability;
-  Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(1 + *std::max_element(groups.begin(), groups.end()), probability.cols());
-  for (Index k = 0; k < probability.rows(); ++k) sums.row(groups[static_cast<std::size_t>(k)]) += probability.row(k);
-  return sums;
-}
-
 }  // namespace
 
 ArchiveGain gain_between(const Archive& better, const Archive& other) {
@@ -81,12 +73,10 @@ ArchiveGain gain_between(const Archive& better, const Archive& other) {
   return result;
 }
 
-Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second, const std::vector<Index>& first_groups,
-                               const std::vector<Index>& second_groups) {
+Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second) {
   Eigen::MatrixXd both, either;
   for (const auto& [i, j] : common_runs(first, second)) {
-    const Eigen::MatrixXd a = grouped(mode_probability(*bank_of(first), i), first_groups),
-                          b = grouped(mode_probability(*bank_of(second), j), second_groups);
+    const Eigen::MatrixXd a = mode_probability(*bank_of(first), i), b = mode_probability(*bank_of(second), j);
     if (both.size() == 0) either = both = Eigen::MatrixXd::Zero(a.rows(), b.rows());
     for (Index k = 0; k < a.cols(); ++k) {
       if (!a.col(k).allFinite() || !b.col(k).allFinite()) continue;

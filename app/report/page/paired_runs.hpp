@@ -22,10 +22,7 @@ ArchiveGain gain_between(const Archive& better, const Archive& other);
 /// Common time (K x L) of mode a of `first` and mode b of `second`. It is the sum of the smaller probability over all
 /// samples, divided by the sum of the larger probability. The value 1 means equal probabilities at every sample. The
 /// probabilities are those after each sample's measurement. Empty if the archives have no judged run in common.
-/// `first_groups`, `second_groups`: the group of each mode (family_of_modes). If they are given, the result is for
-/// groups. A group's probability is the sum over its modes.
-Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second, const std::vector<Index>& first_groups = {},
-                               const std::vector<Index>& second_groups = {});
+Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second);
 
 /// Text such as " by 0.134 +- 0.040 nats per sample". It has no error if the error is unknown.
 std::string gain_words(const PairedGain& gain);

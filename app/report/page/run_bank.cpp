@@ -3,7 +3,6 @@
 #include <algorithm>
 
 #include "app/config/config_file.hpp"
-#include "app/report/page/folded_transition.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/unit_text.hpp"
@@ -156,12 +155,6 @@ Index told_families(const std::vector<ModeFamily>& families) {
   return told_of(use);
 }
 
-std::vector<std::vector<Index>> told_groups(const std::vector<ModeFamily>& families) {
-  std::vector<std::vector<Index>> groups;
-  for (Index f = 0; f < told_families(families); ++f) groups.push_back(families[static_cast<std::size_t>(f)].modes);
-  return groups;
-}
-
 /// For each family: title, modes, use, stay, time constant and gains.
 json families_of(const Archive& archive, const std::vector<ModeFamily>& families, const std::string& unit) {
   const LinearStructure& structure = archive.bank->structure;
@@ -180,20 +173,6 @@ json families_of(const Archive& archive, const std::vector<ModeFamily>& families
                     {"gains", gains_cells(family, unidentifiable)}});
   }
   return list;
-}
-
-/// Transition matrix between the families that have their own row. All other families form one last family.
-json folded_transition_of(const Bank& bank, const std::vector<ModeFamily>& families) {
-  Eigen::VectorXd use(bank.mode_count());
-  for (const ModeFamily& family : families)
-    for (std::size_t i = 0; i < family.modes.size(); ++i) use(family.modes[i]) = family.uses[i];
-  const Eigen::MatrixXd folded = folded_transition(bank.transition.matrix(), told_groups(families), use);
-  json rows = json::array();
-  for (Index i = 0; i < folded.rows(); ++i) {
-    rows.push_back(json::array());
-    for (const double probability : folded.row(i)) rows.back().push_back(number(probability));
-  }
-  return rows;
 }
 
 /// For each label, the families to which the bank assigns the samples with this label. Null without labels.
@@ -267,7 +246,6 @@ nlohmann::json bank_section(const Archive& archive) {
           {"order", order},
           {"told", std::ssize(order) - others},
           {"transition", transition_of(bank)},
-          {"folded", folded_transition_of(bank, families)},
           {"switch_weights", switch_weights_of(bank)},
           {"confusion", label_section(archive, families)},
           {"screened", screened_of(bank)},

@@ -87,7 +87,7 @@ json modes_of(const FirstScreen& screen) {
   for (const ModeTable::Row& row : screen.modes.rows) {
     json cells = json::array();
     for (const std::string& cell : row.cells) cells.push_back(with_signs(cell));
-    rows.push_back({{"modes", row.modes}, {"title", row.title}, {"cells", cells}});
+    rows.push_back({{"modes", row.modes}, {"cells", cells}});
   }
   const ModeTable& modes = screen.modes;
   const std::string others = modes.others == 0 ? ""
@@ -124,14 +124,11 @@ nlohmann::json verdict_section(const Archive& archive) {
           {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
           {"text", screen.answer ? with_signs(screen.finding)
                                  : std::string("No bank was scored, so there is nothing to judge yet.")},
-          {"next", screen.next},
           {"use", screen.use},
           {"warning", screen.warning},
           {"read", screen.read},
-          {"role", name_of(screen.role)},
           {"cards", cards_of(screen)},
-          {"modes", modes_of(screen)},
-          {"picture", picture_of(archive)}};
+          {"modes", modes_of(screen)}};
 }
 
 }  // namespace modebank::app::report

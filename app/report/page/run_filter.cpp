@@ -107,8 +107,7 @@ json verdict_row(const DiagnosticsRow& row) {
           {"coverage_99", with_interval(row.coverage_99, row.coverage_99_lower, row.coverage_99_upper)},
           {"too_far", with_interval(row.too_far, row.too_far_lower, row.too_far_upper)},
           {"too_close", with_interval(row.too_close, row.too_close_lower, row.too_close_upper)},
-          {"nis_mean",
-           number(row.nis_mean, fmt::format("{:.3f} [{:.3f}, {:.3f}]", row.nis_mean, row.nis_lower, row.nis_upper))},
+          {"nis_mean", number(row.nis_mean, fmt::format("{:.3f}", row.nis_mean))},
           {"flags", row.flags}};
 }
 

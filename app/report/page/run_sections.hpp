@@ -14,11 +14,8 @@ namespace modebank::app::report {
 inline constexpr double drawn_level = 0.95;
 
 nlohmann::json origin_section(const Archive& archive);
-/// Content of the first screen, with the same words and numbers (screen_facts.hpp), and a picture.
+/// Content of the first screen, with the same words and numbers (screen_facts.hpp).
 nlohmann::json verdict_section(const Archive& archive);
-/// A small picture of the judged runs. It shows the first state in the colour of the most probable mode, and labels if
-/// there are any. It is drawn before the rest of the page is read.
-nlohmann::json picture_of(const Archive& archive);
 
 /// Number of samples per bucket in the finest drawing of a run's signals. One number is for data and bank, the other
 /// for all other filters.

@@ -19,10 +19,8 @@ json candidate_row(const Candidate& c) {
   row["log_likelihood"] = number(c.log_likelihood, fmt::format("{:.3f}", c.log_likelihood));
   row["parameters"] = count(c.parameters);
   row["effective_samples"] = number(c.effective_samples, fmt::format("{:.1f}", c.effective_samples));
-  for (const auto& [name, value] :
-       {std::pair{"bic", c.bic}, {"icl", c.icl}, {"aic", c.aic}, {"bic_naive", c.bic_naive}})
+  for (const auto& [name, value] : {std::pair{"bic", c.bic}, {"aic", c.aic}, {"bic_naive", c.bic_naive}})
     row[name] = std::isnan(value) ? number(value) : number(value, fmt::format("{:.2f}", value));
-  row["heldout"] = std::isnan(c.heldout) ? number(c.heldout) : number(c.heldout, fmt::format("{:.4f}", c.heldout));
   row["iterations"] = count(c.iterations);
   row["converged"] = c.converged ? "yes" : "no";
   row["agreeing"] = {{"t", fmt::format("{} of {}", c.agreeing_restarts, c.restarts)}, {"v", c.agreeing_restarts}};

@@ -115,8 +115,7 @@ FoundStudy find_study(const fs::path& folder, Written& written) {
 }
 
 FoundStudy find_study(const OpenArchive& file) {
-  FoundStudy study{
-      .name = file.path(), .file = file.path(), .content = read_study_file(file, "study"), .digest = file.digest()};
+  FoundStudy study{.name = file.path(), .file = file.path(), .content = read_study_file(file, "study"), .whole = true};
   return counted(study, study_table_of(study.content));
 }
 

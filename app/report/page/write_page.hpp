@@ -31,7 +31,7 @@ struct FoundStudy {
   std::filesystem::path file;  ///< path of study.h5, which may not exist yet
   StudyFile content;
   std::size_t runs = 0, done = 0;
-  std::string digest = {};  ///< content hash of study.h5; empty unless the file contains all planned runs
+  bool whole = false;  ///< whether study.h5 contains all planned runs
 };
 
 /// The study in a folder, read from study.h5. If that file lacks finished runs, the study is read from its finished
@@ -44,9 +44,10 @@ FoundStudy find_study(const OpenArchive& file);
 void report_study(const FoundStudy& study, const std::filesystem::path& page, const ReportConfig& options,
                   Written& written);
 
-/// The page of two or more archives.
-void report_comparison(const std::vector<std::filesystem::path>& files, const std::filesystem::path& page,
-                       const ReportConfig& options, Written& written);
+/// The page that compares two archives. It states which archive predicts better and lists the different settings. It
+/// shows the scores, and the modes beside the matching modes of the first archive.
+void report_comparison(const std::filesystem::path& file, const std::filesystem::path& other,
+                       const std::filesystem::path& page, Written& written);
 
 /// Whether an open file is the study.h5 of a study.
 bool is_study(const OpenArchive& file);

@@ -14,14 +14,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// The member of the object; null if it does not exist.
-json member(const json& object, const char* name) {
-  return object.is_object() && object.contains(name) ? object[name] : json();
-}
-
+/// The text member of the object; empty if it does not exist.
 std::string text_in(const json& object, const char* name) {
-  const json found = member(object, name);
-  return found.is_string() ? found.get<std::string>() : std::string();
+  return object.is_object() && object.contains(name) && object[name].is_string() ? object[name].get<std::string>() : "";
 }
 
 bool has(const OpenArchive& archive, const std::string& group, const char* name) {
@@ -42,41 +37,21 @@ std::vector<fs::path> files_of(const OpenArchive& archive) {
   return files;
 }
 
-void add_verdict(const OpenArchive& archive, json& line) {
-  if (!has(archive, "/evaluation", "evidence")) return;
-  const json found = inspect(archive, "/evaluation/evidence").at("attributes");
-  for (const char* name : {"answer", "text", "modes", "gain", "standard_error"}) line[name] = member(found, name);
-}
-
-void add_scores(const OpenArchive& archive, json& line) {
-  if (!has(archive, "/evaluation", "summary")) return;
-  const json rows = inspect(archive, "/evaluation/summary").at("value");
-  for (const json& row : rows)
-    if (text_in(row, "filter") == "bank" && text_in(row, "role") == "test" && text_in(row, "run") == "*")
-      for (const char* name : {"samples", "log_score", "coverage_95"}) line[name] = member(row, name);
-}
-
 }  // namespace
 
-json index_row(const OpenArchive& archive) {
-  const json root = inspect(archive, "/");
-  json line = {
-      {"kind", "run"}, {"created", text_in(root.at("attributes"), "created")}, {"data", data_name(files_of(archive))}};
-  if (root.at("members").contains("evaluation")) {
-    add_verdict(archive, line);
-    add_scores(archive, line);
-  }
-  return line;
+void describe(const OpenArchive& archive, IndexRow& row) {
+  row.data = data_name(files_of(archive));
+  row.created = text_in(inspect(archive, "/").at("attributes"), "created");
+  if (has(archive, "/", "evaluation") && has(archive, "/evaluation", "evidence"))
+    row.text = text_in(inspect(archive, "/evaluation/evidence").at("attributes"), "text");
 }
 
-json index_row(const FoundStudy& study) {
-  const Provenance& provenance = study.content.provenance;
+void describe(const FoundStudy& study, IndexRow& row) {
   std::vector<fs::path> files;
-  for (const InputFile& file : provenance.inputs) files.emplace_back(file.path);
-  return {{"kind", "study"},
-          {"created", provenance.created},
-          {"data", data_name(files)},
-          {"text", fmt::format("{} of {} runs are done.", study.done, study.runs)}};
+  for (const InputFile& file : study.content.provenance.inputs) files.emplace_back(file.path);
+  row.data = data_name(files);
+  row.created = study.content.provenance.created;
+  row.text = fmt::format("{} of {} runs are done.", study.done, study.runs);
 }
 
 }  // namespace modebank::app::report

@@ -13,7 +13,6 @@ namespace modebank::app::report {
 struct SiteResult {
   std::size_t archives = 0;  ///< number of archives and studies; each has one row in the index
   std::vector<std::pair<std::string, std::string>> problems;  ///< name of an archive, and the reason why it has no page
-  std::vector<std::string> removed;  ///< removed pages, because their archive is gone or has fewer pages now
 };
 
 /// Whether a folder contains a single study, merged or not, instead of archives.
@@ -23,13 +22,12 @@ bool holds_a_study(const std::filesystem::path& folder);
 /// study. Hidden files are ignored.
 std::vector<std::filesystem::path> archives_below(const std::filesystem::path& folder);
 
-/// Writes SITE/index.html, with a row for each archive, and the pages in SITE/pages.
-/// - A page is made again only if the archive's content, modebank's revision or a setting of [report] has changed.
-/// - A page is removed if its archive is gone.
+/// Writes SITE/index.html, a table of links with a row for each archive, and the pages in SITE/pages.
+/// - A page is kept while it has the time of its archive. Pages of archives that are gone stay, without a link.
 /// - The row of an unreadable archive states the reason.
 /// - Each file is written under a temporary name and then renamed.
 ///
-/// Throws ConfigurationError if `folder` has no archive. Also throws the exceptions of read_site_record.
+/// Throws ConfigurationError if `folder` has no archive, or if `site` has files but no index of `report`.
 SiteResult report_folder(const std::filesystem::path& folder, const std::filesystem::path& site,
                          const ReportConfig& options, Written& written);
 

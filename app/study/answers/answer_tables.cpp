@@ -23,7 +23,6 @@ std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& an
   using E = MainEffect;
   using I = KeyInfluence;
   using B = BestSetting;
-  using P = ParetoSetting;
   using S = RepeatSpread;
   std::vector<NamedTable> tables{
       {"main_effects",
@@ -43,12 +42,7 @@ std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& an
         column_from("better", answers.best, [](const B& b) { return b.goal.text(); }),
         column_from("value", answers.best, [](const B& b) { return b.value; }),
         column_from("repeats", answers.best, [](const B& b) { return b.repeats; }),
-        column_from("trial", answers.best, trial_of), column_from("setting", answers.best, setting_of)}},
-      {"pareto",
-       {column_from("modes", answers.pareto, [](const P& p) { return p.modes; }),
-        column_from(answers.headline.empty() ? "log_score" : answers.headline, answers.pareto,
-                    [](const P& p) { return p.log_score; }),
-        column_from("trial", answers.pareto, trial_of), column_from("setting", answers.pareto, setting_of)}}};
+        column_from("trial", answers.best, trial_of), column_from("setting", answers.best, setting_of)}}};
   if (!answers.spread.empty())
     tables.push_back({"spread",
                       {column_from("score", answers.spread, [](const S& s) { return s.score; }),

@@ -9,7 +9,7 @@
 
 namespace modebank::app {
 
-/// The answers as tables of /answers in study.h5: main_effects, influence, best, pareto and, if there are repeats,
+/// The answers as tables of /answers in study.h5: main_effects, influence, best and, if there are repeats,
 /// spread. The column `trial` contains the keys of trials.
 std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& answers);
 

@@ -7,14 +7,12 @@
 #include <limits>
 #include <map>
 #include <numeric>
-
-#include "app/study/answers/value_groups.hpp"
+#include <set>
 
 namespace modebank::app {
 namespace {
 
 constexpr double no_number = std::numeric_limits<double>::quiet_NaN();
-constexpr const char* modes_column = "modes";
 
 /// For each setting, its finished trials as row numbers in the order of the table.
 using Settings = std::vector<std::vector<std::size_t>>;
@@ -84,6 +82,31 @@ double best_mean(const StudyTable& table, const std::vector<std::size_t>& rows, 
   return best;
 }
 
+/// The finished trials with one value of a varied key.
+struct ValueGroup {
+  std::string value;
+  std::vector<std::size_t> rows;
+};
+
+/// Groups in the order of the plan. None if their means would say nothing about the key: it has too many values, or
+/// most of its values have a single setting, although other keys vary.
+std::vector<ValueGroup> value_groups(const StudyTable& table, std::size_t key) {
+  constexpr std::size_t most_values = 30, few_values = 5;
+  std::vector<ValueGroup> groups;
+  std::map<std::string, std::size_t> index;
+  std::set<std::vector<std::string>> settings;
+  for (std::size_t i = 0; i < table.rows.size(); ++i) {
+    if (table.rows[i].status != TrialStatus::done) continue;
+    const std::string& value = table.rows[i].varied.at(key);
+    const auto [found, fresh] = index.emplace(value, groups.size());
+    if (fresh) groups.push_back({value, {}});
+    groups[found->second].rows.push_back(i);
+    settings.insert(table.rows[i].varied);
+  }
+  const bool thin = table.varied_keys.size() > 1 && groups.size() > few_values && settings.size() < 2 * groups.size();
+  return thin || groups.size() > most_values ? std::vector<ValueGroup>() : groups;
+}
+
 /// Adds the effects of one key on one score.
 void add_effects(const StudyTable& table, const std::string& key, const std::vector<ValueGroup>& groups,
                  std::size_t score, Answers& answers) {
@@ -94,7 +117,7 @@ void add_effects(const StudyTable& table, const std::string& key, const std::vec
   for (const ValueGroup& group : groups) {
     const std::vector<double> values = values_of(table, group.rows, score);
     const double mean = mean_of(values);
-    answers.main_effects.push_back({key, group.label, name, static_cast<int>(values.size()), mean,
+    answers.main_effects.push_back({key, group.value, name, static_cast<int>(values.size()), mean,
                                     std::sqrt(variance_of(values)), best_mean(table, group.rows, score, goal)});
     within += squares_about(values, mean);
     all.insert(all.end(), values.begin(), values.end());
@@ -114,23 +137,6 @@ std::optional<BestSetting> best_setting(const StudyTable& table, const Settings&
       best = {table.score_names[score], goal, mean, static_cast<int>(values.size()), rows.front()};
   }
   return best;
-}
-
-std::vector<ParetoSetting> pareto_settings(const StudyTable& table, const Settings& settings, std::size_t modes,
-                                           std::size_t log_score) {
-  std::vector<ParetoSetting> candidates;
-  for (const auto& rows : settings) {
-    const ParetoSetting candidate{mean_of(values_of(table, rows, modes)), mean_of(values_of(table, rows, log_score)),
-                                  rows.front()};
-    if (std::isfinite(candidate.modes) && std::isfinite(candidate.log_score)) candidates.push_back(candidate);
-  }
-  std::stable_sort(candidates.begin(), candidates.end(), [](const ParetoSetting& a, const ParetoSetting& b) {
-    return a.modes != b.modes ? a.modes < b.modes : a.log_score > b.log_score;
-  });
-  std::vector<ParetoSetting> front;
-  for (const ParetoSetting& candidate : candidates)
-    if (front.empty() || candidate.log_score > front.back().log_score) front.push_back(candidate);
-  return front;
 }
 
 std::optional<RepeatSpread> spread_of(const StudyTable& table, const Settings& settings, std::size_t score) {
@@ -163,7 +169,7 @@ Answers answer(const StudyTable& table) {
   for (std::size_t key = 0; key < table.varied_keys.size(); ++key) {
     const std::vector<ValueGroup> groups = value_groups(table, key);
     for (std::size_t score = 0; score < table.score_names.size(); ++score)
-      if (goal_in(table, score)) add_effects(table, table.varied_keys[key], groups, score, answers);
+      if (!groups.empty() && goal_in(table, score)) add_effects(table, table.varied_keys[key], groups, score, answers);
   }
   for (std::size_t score = 0; score < table.score_names.size(); ++score) {
     const std::optional<ScoreGoal> goal = goal_in(table, score);
@@ -171,8 +177,6 @@ Answers answer(const StudyTable& table) {
     if (const auto best = best_setting(table, settings, score, *goal)) answers.best.push_back(*best);
     if (const auto spread = spread_of(table, settings, score)) answers.spread.push_back(*spread);
   }
-  const auto modes = column_of(table, modes_column), log_score = column_of(table, answers.headline);
-  if (modes && log_score) answers.pareto = pareto_settings(table, settings, *modes, *log_score);
   return answers;
 }
 

@@ -11,8 +11,8 @@
 /// only in the seed. Only finished trials count. This file neither reads files nor prints.
 namespace modebank::app {
 
-/// Mean of a score over all trials with one value of a varied key. For keys with many numbers, the trials are those
-/// with a range of values.
+/// Mean of a score over all trials with one value of a varied key. A key has no effects if it has more than 30 values,
+/// or if most of its values have a single setting while other keys vary, as in sampled plans.
 /// Unless the plan is a full grid, the settings of other keys also affect this mean. `best` avoids this problem: it is
 /// the score of the best setting with this value.
 struct MainEffect {
@@ -38,13 +38,6 @@ struct BestSetting {
   std::size_t row = 0;  ///< row of the first finished repeat
 };
 
-/// A setting with a better log score than every other setting that has as many modes or fewer.
-struct ParetoSetting {
-  double modes = 0.0;  ///< mean over the repeats, like the log score
-  double log_score = 0.0;
-  std::size_t row = 0;
-};
-
 /// Standard deviation between the repeats of a setting, and between settings.
 struct RepeatSpread {
   std::string score;
@@ -60,8 +53,7 @@ struct Answers {
   std::vector<MainEffect> main_effects;
   std::vector<KeyInfluence> influences;
   std::vector<BestSetting> best;
-  std::vector<ParetoSetting> pareto;  ///< ordered by number of modes; empty if the table has no column of modes
-  std::vector<RepeatSpread> spread;   ///< empty if there are no repeats
+  std::vector<RepeatSpread> spread;  ///< empty if there are no repeats
 };
 
 Answers answer(const StudyTable& table);

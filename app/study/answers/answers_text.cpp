@@ -8,8 +8,6 @@
 #include <set>
 #include <vector>
 
-#include "app/study/answers/value_groups.hpp"
-
 namespace modebank::app {
 namespace {
 
@@ -46,14 +44,17 @@ std::vector<KeyInfluence> ranked_influences(const Answers& answers) {
 
 /// The other keys that always change together with this key, and therefore have the same effects.
 std::vector<std::string> keys_in_step(const StudyTable& table, std::size_t key) {
-  const std::vector<ValueGroup> groups = value_groups(table, key);
-  const auto same_rows = [](const ValueGroup& a, const ValueGroup& b) { return a.rows == b.rows; };
   std::vector<std::string> names;
   for (std::size_t other = 0; other < table.varied_keys.size(); ++other) {
-    const std::vector<ValueGroup> theirs = value_groups(table, other);
-    if (other != key && groups.size() > 1 &&
-        std::equal(groups.begin(), groups.end(), theirs.begin(), theirs.end(), same_rows))
-      names.push_back(table.varied_keys[other]);
+    std::map<std::string, std::string> there, back;
+    bool same = other != key;
+    for (const TrialRow& row : table.rows) {
+      if (row.status != TrialStatus::done) continue;
+      const std::string &value = row.varied[key], &theirs = row.varied[other];
+      same = same && there.try_emplace(value, theirs).first->second == theirs &&
+             back.try_emplace(theirs, value).first->second == value;
+    }
+    if (same && there.size() > 1) names.push_back(table.varied_keys[other]);
   }
   return names;
 }
@@ -71,6 +72,7 @@ std::string effect_heading(const StudyTable& table, const KeyInfluence& influenc
 }
 
 std::string effects_text(const StudyTable& table, const Answers& answers) {
+  if (answers.influences.empty()) return "";
   const std::vector<std::string> scores = shown_scores(table, answers.headline);
   std::string text = fmt::format(
       "Main effects: mean over all trials with a value of the key. share: part of the variance of {} over the "
@@ -129,16 +131,6 @@ std::string best_text(const StudyTable& table, const Answers& answers) {
   return text + evidence_text(table);
 }
 
-std::string pareto_text(const StudyTable& table, const Answers& answers) {
-  if (answers.pareto.empty()) return "";
-  std::string text = fmt::format("\nBest {} by number of modes (Pareto set)\n{:>6} {:>10}  {:<12}  {}\n",
-                                 answers.headline, "modes", "log_score", "trial", "setting");
-  for (const ParetoSetting& point : answers.pareto)
-    text += fmt::format("{:>6.3g} {:>10.4f}  {:<12}  {}\n", point.modes, point.log_score,
-                        table.rows[point.row].key.substr(0, 12), short_setting(table, point.row));
-  return text;
-}
-
 std::string spread_text(const StudyTable& table, const Answers& answers) {
   if (answers.spread.empty()) return "";
   const std::vector<std::string> shown = shown_scores(table, answers.headline);
@@ -164,8 +156,7 @@ std::string setting_text(const StudyTable& table, std::size_t row) {
 
 std::string answers_text(const StudyTable& table, const Answers& answers) {
   if (answers.headline.empty()) return "";
-  return effects_text(table, answers) + best_text(table, answers) + pareto_text(table, answers) +
-         spread_text(table, answers);
+  return effects_text(table, answers) + best_text(table, answers) + spread_text(table, answers);
 }
 
 }  // namespace modebank::app

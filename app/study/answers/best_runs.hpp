@@ -11,9 +11,8 @@ namespace modebank::app {
 /// Configuration of the best setting by one score, ready for `modebank run`, with a comment that explains it.
 std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best);
 
-/// Writes study.best.ini (best by the headline) and best/SCORE.ini for every score of the bank into the study's folder.
-/// In file names, one '_' replaces each sequence of characters that are neither letters nor digits.
-void write_best_runs(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
-                     const Answers& answers);
+/// Writes study.best.ini, the setting that is best by the headline, into the study's folder.
+void write_best_run(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
+                    const Answers& answers);
 
 }  // namespace modebank::app

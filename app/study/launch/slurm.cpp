@@ -1,7 +1,6 @@
 #include "app/study/launch/slurm.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
@@ -9,7 +8,6 @@
 #include <regex>
 
 #include "app/study/launch/shell.hpp"
-#include "app/study/launch/slurm_jobs.hpp"
 #include "ident/base/characters.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
@@ -21,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
+fs::path slurm_folder(const fs::path& study) { return study / "slurm"; }
 fs::path run_script_path(const SlurmRequest& request) { return slurm_folder(request.folder) / "run.sh"; }
 fs::path merge_script_path(const SlurmRequest& request) { return slurm_folder(request.folder) / "merge.sh"; }
 
 std::string study_command(const SlurmRequest& request, const std::string& stage) {
   std::vector<std::string> words{request.program.string(), "study", request.config.string()};
   for (const auto& [key, value] : request.overrides)
-    if (key != "study.output" && key != "study.stage" && key != "study.shard" && key != "data.root")
+    if (key != "study.output" && key != "study.stage" && key != "data.root")
       words.insert(words.end(), {"--" + key, value});
   words.insert(words.end(), {"--data.root", request.data_root.string(), "--study.output", request.folder.string(),
                              "--study.stage", stage});
@@ -106,35 +105,23 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
 std::string run_script(const SlurmRequest& request) {
   // Without --cpus-per-task, Slurm gives a task one processor.
   const std::string jobs = has_jobs_override(request) ? "" : " --study.jobs \"${SLURM_CPUS_PER_TASK:-1}\"";
-  return script_head() + fmt::format("exec {}{} --study.shard \"$SLURM_ARRAY_TASK_ID/{}\"\n",
-                                     study_command(request, "run"), jobs, request.shards);
+  return script_head() + fmt::format("exec {}{}\n", study_command(request, "run"), jobs);
 }
 
 std::string merge_script(const SlurmRequest& request) {
   return script_head() + fmt::format("exec {}\n", study_command(request, "merge"));
 }
 
-std::string array_list(const std::vector<int>& tasks) {
-  std::vector<std::string> parts;
-  for (std::size_t first = 0; first < tasks.size();) {
-    std::size_t last = first;
-    while (last + 1 < tasks.size() && tasks[last + 1] == tasks[last] + 1) ++last;
-    parts.push_back(first == last ? fmt::format("{}", tasks[first]) : fmt::format("{}-{}", tasks[first], tasks[last]));
-    first = last + 1;
-  }
-  return fmt::format("{}", fmt::join(parts, ","));
-}
-
 void check_request(const SlurmRequest& request) {
   if (!in_path("sbatch"))
     throw ConfigurationError(
         "study.stage = submit needs Slurm, but PATH has no sbatch; with another scheduler run --study.stage run "
-        "--study.shard i/n for i = 0..n-1, then --study.stage merge");
+        "in any number of processes, then --study.stage merge");
   for (const std::string& option : request.options)
     if (option.starts_with("--array") || option.starts_with("-a") || option.find_first_of("'\"") != std::string::npos)
       throw ConfigurationError(
-          fmt::format("study.slurm_options: {} is not taken: modebank sets --array (study.slurm_tasks is the number of "
-                      "tasks), and options are cut at blanks, whatever quotes they hold",
+          fmt::format("study.slurm_options: {} is not taken: modebank sets --array (one task per ten runs, at most "
+                      "100), and options are cut at blanks, whatever quotes they hold",
                       option));
   for (const fs::path& path :
        {request.program, request.config, request.folder, request.data_root, fs::current_path()}) {
@@ -159,13 +146,11 @@ SlurmSubmission submit_to_slurm(const SlurmRequest& request) {
   replace_file(merge_script_path(request), {merge_script(request)});
   SlurmSubmission submission;
   submission.commands.push_back(shell_command(
-      sbatch_words(request, "run", "%A_%a.log", "--array=" + array_list(request.tasks), run_script_path(request))));
+      sbatch_words(request, "run", "%A_%a.log", fmt::format("--array=1-{}", request.tasks), run_script_path(request))));
   submission.array_job = sbatch(request, submission.commands.back());
-  remember_job(request.folder, {"run", submission.array_job});
   submission.commands.push_back(shell_command(sbatch_words(
       request, "merge", "%j.log", "--dependency=afterany:" + submission.array_job, merge_script_path(request))));
   submission.merge_job = sbatch(request, submission.commands.back());
-  remember_job(request.folder, {"merge", submission.merge_job});
   return submission;
 }
 

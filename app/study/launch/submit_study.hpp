@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "app/study/space/study_plan.hpp"
+#include "app/study/answers/study_table.hpp"
 #include "app/study/study.hpp"
 
 namespace modebank::app {
@@ -11,8 +11,9 @@ namespace modebank::app {
 /// any file is written.
 void check_submission(const StudyCall& call);
 
-/// Submits the shards that have unfinished runs, then the merge, and prints the commands. `table`: results of the
-/// plan's rows so far. Throws the exceptions of submit_to_slurm.
-std::string submit_study(const StudyCall& call, const StudyPlan& plan, const StudyTable& table);
+/// Submits an array of tasks, one per ten unfinished runs and at most a hundred, then the merge, and returns the
+/// commands as text. The tasks share the runs by claims. `table`: results of the plan's rows so far. Throws the
+/// exceptions of submit_to_slurm.
+std::string submit_study(const StudyCall& call, const StudyTable& table);
 
 }  // namespace modebank::app

@@ -78,7 +78,7 @@ std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore
   return std::nullopt;
 }
 
-/// Runs one shard of a study to its end.
+/// Runs a study to its end.
 class StudyRun {
  public:
   StudyRun(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
@@ -115,7 +115,6 @@ class StudyRun {
     std::optional<std::size_t> trial = {};  ///< index of the row that the worker runs now
     std::optional<std::size_t> last = {};   ///< index of the row that the worker began last
     Clock::time_point since = {};           ///< start time of the worker's trial
-    bool overdue = false;
   };
 
   /// Assigns unfinished rows to workers. All other rows are counted as finished.
@@ -153,29 +152,18 @@ class StudyRun {
     workers_.push_back({.process = std::make_unique<WorkerProcess>(file, starts_[group]), .group = group});
   }
 
-  /// Waits until a worker reports or ends, or until the time limit of a trial is reached.
+  /// Waits until a worker reports or ends.
   void wait() const {
-    constexpr double patience_s = 1.0, ms_per_s = 1000.0;
-    double left_s = patience_s;
+    constexpr int patience_ms = 1000;
     std::vector<pollfd> channels;
-    for (const Worker& worker : workers_) {
-      channels.push_back({worker.process->channel(), POLLIN, 0});
-      if (timeout_s() > 0.0 && worker.trial)
-        left_s = std::clamp(timeout_s() - seconds_since(worker.since), 0.0, left_s);
-    }
-    ::poll(channels.data(), channels.size(), static_cast<int>(ms_per_s * left_s) + 1);
+    for (const Worker& worker : workers_) channels.push_back({worker.process->channel(), POLLIN, 0});
+    ::poll(channels.data(), channels.size(), patience_ms);
   }
-
-  double timeout_s() const { return settings_.config.study.timeout_s; }
 
   void handle_message(const TaskFile& file, Worker& worker) {
     const auto lines = worker.process->read_lines();
     if (!lines) return replace(file, worker);
     for (const std::string& line : *lines) take(worker, unpack_report(line));
-    // On a busy machine a report may arrive late. It counts if the trial itself was in time.
-    if (!lines->empty() || !worker.trial || timeout_s() <= 0.0 || seconds_since(worker.since) <= timeout_s()) return;
-    worker.overdue = true;
-    worker.process->kill();
   }
 
   void take(Worker& worker, const TrialReport& report) {
@@ -199,11 +187,10 @@ class StudyRun {
     const std::string why = worker.process->end();
     if (worker.trial) {
       const std::string& key = rows_[*worker.trial].key;
-      TrialReport crash{
-          .row = *worker.trial,
-          .outcome = TrialOutcome::failed,
-          .message = worker.overdue ? fmt::format("the run took longer than study.timeout_s = {}", timeout_s()) : why,
-          .seconds = seconds_since(worker.since)};
+      TrialReport crash{.row = *worker.trial,
+                        .outcome = TrialOutcome::failed,
+                        .message = why,
+                        .seconds = seconds_since(worker.since)};
       if (store_.has_archive(key))
         crash = {.row = crash.row, .outcome = TrialOutcome::present};  // the archive exists; only the report of the
                                                                        // worker is missing
@@ -236,8 +223,6 @@ class StudyRun {
     const TrialRow& row = rows_[report.row];
     if (process != 0 && report.outcome != TrialOutcome::present) log_trial(store_, process, row, report);
     listener_(row, report, finished_.size(), all_);
-    stopping_ =
-        stopping_ || (report.outcome == TrialOutcome::failed && settings_.config.study.on_failure == OnFailure::stop);
   }
 
   void sort_in(std::size_t place, const TrialReport& report) {

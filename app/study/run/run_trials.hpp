@@ -10,7 +10,7 @@
 
 namespace modebank::app {
 
-/// Result of a shard of a study.
+/// Result of running a study.
 struct RunResult {
   std::size_t computed = 0, present = 0;
   std::vector<std::size_t> failed;    ///< rows
@@ -34,8 +34,7 @@ using TrialListener = std::function<void(const TrialRow&, const TrialReport&, st
 /// - A trial with a complete archive is not run again; a failed trial is.
 /// - Each process begins with another group and skips trials that other processes have claimed. At its end it waits for
 ///   these trials.
-/// - A trial fails if its process crashes or needs longer than study.timeout_s. A new process then replaces the old
-///   one.
+/// - A trial fails if its process crashes. A new process then replaces the old one.
 RunResult run_trials(const TrialSettings& settings, const StudyPlan& plan, const TrialGroups& groups,
                      const TrialListener& listener);
 

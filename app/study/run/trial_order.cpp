@@ -57,25 +57,6 @@ TrialGroups group_trials(const Config& study, const StudyPlan& plan) {
   return groups;
 }
 
-TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t count) {
-  const auto i = static_cast<std::size_t>(index), n = static_cast<std::size_t>(count);
-  TrialGroups share;
-  if (groups.size() >= n) {
-    for (std::size_t g = i; g < groups.size(); g += n) share.push_back(groups[g]);
-    return share;
-  }
-  std::size_t trials = 0, position = 0;
-  for (const auto& group : groups) trials += group.size();
-  if (trials == 0) return share;
-  for (const auto& group : groups) {
-    share.emplace_back();
-    for (const std::size_t row : group)
-      if (position++ * n / trials == i) share.back().push_back(row);
-    if (share.back().empty()) share.pop_back();
-  }
-  return share;
-}
-
 DistinctStages count_stages(const Config& study, const StudyPlan& plan) {
   std::array<Numbering, 3> numbers;
   place_trials(study, plan, numbers);

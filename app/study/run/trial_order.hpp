@@ -12,9 +12,6 @@ using TrialGroups = std::vector<std::vector<std::size_t>>;
 
 TrialGroups group_trials(const Config& study, const StudyPlan& plan);
 
-/// The groups of one shard: every n-th group. If there are more shards than groups, a part of a group.
-TrialGroups shard_of(const TrialGroups& groups, std::int64_t index, std::int64_t count);
-
 /// Numbers of distinct windows, mixtures and banks among the trials.
 struct DistinctStages {
   std::size_t windows = 0, mixtures = 0, banks = 0;

@@ -118,8 +118,7 @@ std::string key_differences(const std::string& before, const std::string& now) {
   const auto values_before = resolved_values(before), values_now = resolved_values(now);
   std::string text;
   for (const auto& [key, value] : values_now) {
-    static const std::vector<std::string> plan_keys{"study.vary", "study.together", "study.when", "study.sample",
-                                                    "study.repeats"};
+    static const std::vector<std::string> plan_keys{"study.vary", "study.together", "study.sample", "study.repeats"};
     const bool decides = decides_numbers(key) || std::find(plan_keys.begin(), plan_keys.end(), key) != plan_keys.end();
     const auto old = values_before.find(key);
     const std::string old_value = old == values_before.end() ? "" : old->second;

@@ -9,7 +9,6 @@
 #include <cmath>
 #include <set>
 
-#include "app/config/option_table.hpp"
 #include "app/config/option_text.hpp"
 #include "ident/base/seed.hpp"
 #include "modebank/base/error.hpp"
@@ -27,7 +26,6 @@ struct Axis {
 struct Definition {
   std::vector<VariedKey> varied;
   std::vector<Axis> axes;
-  std::vector<VaryCondition> conditions;
 };
 
 /// Index of a varied key; if the key is not varied, the number of varied keys.
@@ -93,12 +91,6 @@ Definition read_definition(const StudyConfig& study) {
   Definition definition;
   definition.varied = read_varied(study);
   definition.axes = make_axes(definition.varied, read_groups(study, definition.varied));
-  for (const std::string& line : study.when) {
-    definition.conditions.push_back(parse_when(line));
-    if (position_of(definition.varied, definition.conditions.back().key) == definition.varied.size())
-      throw ConfigurationError(
-          fmt::format("study.when = {}: {} is not varied", line, definition.conditions.back().key));
-  }
   return definition;
 }
 
@@ -167,20 +159,6 @@ std::vector<StudyPoint> samples(const Definition& definition, const Config& conf
   return points;
 }
 
-/// If the condition of a key is false, resets the key to the configuration's value. Other conditions may depend on this
-/// key, so this is repeated until nothing changes.
-void apply_conditions(const Definition& definition, const std::vector<std::string>& own, const Config& config,
-                      StudyPoint& point) {
-  const std::vector<VariedKey>& varied = definition.varied;
-  for (std::size_t pass = 0; pass <= definition.conditions.size(); ++pass)
-    for (const VaryCondition& condition : definition.conditions) {
-      const std::size_t key = position_of(varied, condition.key), other = position_of(varied, condition.other);
-      const std::string value = other < varied.size() ? point[other] : find_option(condition.other)->get(config);
-      if (std::find(condition.values.begin(), condition.values.end(), value) == condition.values.end())
-        point[key] = own[key];
-    }
-}
-
 }  // namespace
 
 StudySpace lay_out(const Config& config) {
@@ -188,14 +166,9 @@ StudySpace lay_out(const Config& config) {
   if (definition.varied.empty())
     throw ConfigurationError("study.vary is empty; name the keys to vary, for example vary = window.step = 1 | 5");
   StudySpace space;
-  std::vector<std::string> own;
-  for (const VariedKey& varied : definition.varied) {
-    space.keys.push_back(varied.key);
-    own.push_back(find_option(varied.key)->get(config));
-  }
+  for (const VariedKey& varied : definition.varied) space.keys.push_back(varied.key);
   std::set<StudyPoint> seen;
   for (StudyPoint& point : config.study.sample > 0 ? samples(definition, config) : grid(definition)) {
-    apply_conditions(definition, own, config, point);
     if (seen.insert(point).second)
       space.points.push_back(std::move(point));
     else

@@ -18,8 +18,7 @@ struct StudySpace {
 };
 
 /// Every point of the grid, or study.sample points of a Latin hypercube (McKay, Beckman & Conover 1979). The seed is
-/// job.seed. A key whose condition is false has the configuration's own value. Throws ConfigurationError if lines
-/// contradict each other.
+/// job.seed. Throws ConfigurationError if lines contradict each other.
 StudySpace lay_out(const Config& config);
 
 }  // namespace modebank::app

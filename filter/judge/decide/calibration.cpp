@@ -11,16 +11,14 @@ namespace modebank {
 
 namespace {
 
-constexpr double nis_level = 0.99;     // level of the confidence interval that decides the verdict
-constexpr double nis_tolerance = 0.1;  // tolerated deviation of the mean NIS, as a share of its expected value;
-                                       // corresponds to a twentieth of the band's width
+constexpr double nis_level = 0.99;  // level of the confidence interval that decides the verdict
 constexpr double outside_level = 0.99;
 
 /// Verdict of the mean NIS: -1 for underconfident, 1 for overconfident, 0 for neither.
 int judge_nis(const BandCounts& counts) {
   if (!counts.chi_square_nis) return 0;
   const double degrees = counts.nis_degrees, mean = mean_distance(counts.nis, degrees);
-  const Interval expected = mean_distance_interval(counts.nis, degrees, true, nis_level);
+  const Interval expected = mean_distance_interval(counts.nis, degrees, nis_level);
   if (mean > expected.upper && mean > (1.0 + nis_tolerance) * degrees) return 1;
   if (mean < expected.lower && mean < (1.0 - nis_tolerance) * degrees) return -1;
   return 0;

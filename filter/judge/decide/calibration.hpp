@@ -22,7 +22,7 @@ namespace modebank {
 /// If the filter is neither overconfident nor underconfident by these rules, the mean NIS decides. It must lie outside
 /// the 99 % interval for a correct model and differ from the expected mean by more than a tenth. This rule holds only
 /// if every prediction is one Gaussian of known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square
-/// and only sets a flag.
+/// and decides nothing here.
 ///
 /// Autocorrelated samples count as fewer independent samples. Their number follows from an autocorrelation time with a
 /// margin for its own error. Two times are computed: from the band's misses, and from the sizes of all samples. The
@@ -36,6 +36,9 @@ struct EnumNames<Calibration> {
 
 /// Limits for `calibrated`: share of signals outside the deciding band, and share of signals too close to the middle.
 inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_close = 0.01, largest_close = 0.04;
+/// Tolerated deviation of the mean NIS of single Gaussian predictions, as a share of its expected value. It corresponds
+/// to a twentieth of the band's width.
+inline constexpr double nis_tolerance = 0.1;
 /// Limits for `calibrated`: mean NIS per signal, and lag-1 autocorrelation of z.
 inline constexpr double least_nis = 0.75, most_nis = 1.3, largest_correlation = 0.2;
 

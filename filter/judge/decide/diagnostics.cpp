@@ -112,18 +112,6 @@ std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vec
   return states;
 }
 
-void set_distances(const Collected& c, double nees_states, DiagnosticsRow& row) {
-  const BandCounts& e = c.counts;
-  row.nis_mean = mean_distance(e.nis, e.nis_degrees);
-  const Interval nis = mean_distance_interval(e.nis, e.nis_degrees, e.chi_square_nis);
-  row.nis_lower = nis.lower;
-  row.nis_upper = nis.upper;
-  row.nees_mean = mean_distance(c.nees, nees_states);
-  const Interval nees = mean_distance_interval(c.nees, nees_states, e.chi_square_nis);
-  row.nees_lower = nees.lower;
-  row.nees_upper = nees.upper;
-}
-
 DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   DiagnosticsRow row;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
@@ -134,7 +122,8 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   row.dwell_model = not_a_number;
   const double time = time_by_sizes(c.counts.sizes);
   set_fractions(c.counts, time, row);
-  set_distances(c, static_cast<double>(nees_states), row);
+  row.nis_mean = mean_distance(c.counts.nis, c.counts.nis_degrees);
+  row.nees_mean = mean_distance(c.nees, static_cast<double>(nees_states));
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
@@ -172,12 +161,6 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
   if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
   if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
   if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
-  if (all.nis_mean > all.nis_upper) add_flag(flags, "mean NIS above the interval of a correct model");
-  if (all.nis_mean < all.nis_lower) add_flag(flags, "mean NIS below the interval of a correct model");
-  if (all.nees_mean > all.nees_upper)
-    add_flag(flags, "NEES above the interval of a correct model: the state's covariance is too small");
-  if (all.nees_mean < all.nees_lower)
-    add_flag(flags, "NEES below the interval of a correct model: the state's covariance is too large");
   if (errors_follow_a_pattern(all))
     add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
                         std::to_string(all.autocorrelation_lag));

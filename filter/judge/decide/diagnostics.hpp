@@ -15,7 +15,7 @@ namespace modebank {
 /// those samples where it was the most probable mode before the measurement. If the model is correct, these samples are
 /// calibrated, too, because the transform is uniform given all earlier information (Rosenblatt 1952; Diebold, Gunther &
 /// Tay 1998). Intervals have 95 % confidence. Those of fractions follow Clopper & Pearson (1934), with the effective
-/// number of independent samples (calibration.hpp). Those of mean NIS and NEES use chi-square (squared_distances.hpp).
+/// number of independent samples (calibration.hpp).
 /// The intervals hold for a correct model; they do not include the error of a learned filter. NaN means unknown.
 struct DiagnosticsRow {
   std::string filter;
@@ -36,14 +36,11 @@ struct DiagnosticsRow {
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< share of z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< share of z^2 below its 2.5 % quantile
-  double nis_mean = 0.0, nis_lower = 0.0, nis_upper = 0.0;     ///< `mean_distance` of the NIS, and the interval in
-                                                               ///< which it lies for a correct model
-  double nees_mean = 0.0, nees_lower = 0.0, nees_upper = 0.0;  ///< NEES of the state after the measurement, if the true
-                                                               ///< state is known. NaN if R is negligible, because the
-                                                               ///< state then equals the measurement
-  Eigen::VectorXd state_rmse;                                  ///< n_y, RMSE of the state against the true state; NaN
-                                                               ///< if the true state is unknown
-  double whiteness_p = 0.0;                                    ///< p value of Ljung & Box's test, as in the summary
+  double nis_mean = 0.0;         ///< `mean_distance` of the NIS; n_y is expected for a correct model
+  double nees_mean = 0.0;        ///< NEES of the state after the measurement, if the true state is known. NaN if R is
+                                 ///< negligible, because the state then equals the measurement
+  Eigen::VectorXd state_rmse;    ///< n_y, RMSE of the state against the true state; NaN if the true state is unknown
+  double whiteness_p = 0.0;      ///< p value of Ljung & Box's test, as in the summary
   double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value, found at autocorrelation_lag; 0
                                  ///< for a mode
   Eigen::Index autocorrelation_lag = 0;

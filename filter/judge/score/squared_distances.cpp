@@ -25,17 +25,6 @@ SeriesByRun deviations(const SquaredDistances& d) {
   return result;
 }
 
-/// Dispersion of the distances: their variance about the expected sizes, divided by that of chi-square terms with the
-/// same mean and degrees. It is 1 for a correct model with single Gaussian predictions. It is larger if a few terms are
-/// large, for example with rare and distant modes. A factor on all distances does not change it. 1 without variance.
-double dispersion(const SquaredDistances& distances, const SeriesByRun& deviations) {
-  const double mean = mean_per_degree(distances);
-  double squares = 0.0;
-  for (const auto& x : deviations)
-    for (const double value : x) squares += value * value;
-  return squares > 0.0 ? squares / (2.0 * mean * mean * sum_of(distances.degrees)) : 1.0;
-}
-
 }  // namespace
 
 void SquaredDistances::begin_run() {
@@ -55,13 +44,11 @@ Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample
 
 double mean_distance(const SquaredDistances& distances, double of_all) { return of_all * mean_per_degree(distances); }
 
-Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level) {
+Interval mean_distance_interval(const SquaredDistances& distances, double of_all, double level) {
   const double count = sample_count(distances.value);
   if (count == 0.0) return {not_a_number, not_a_number};
-  const SeriesByRun about_mean = deviations(distances);
-  const double time = cautious_time(autocorrelation_time(about_mean), count);
-  const double excess = chi_square ? 1.0 : dispersion(distances, about_mean);
-  const double total = std::max(1.0, sum_of(distances.degrees) / (excess * time)), outside = 0.5 * (1.0 - level);
+  const double time = cautious_time(autocorrelation_time(deviations(distances)), count);
+  const double total = std::max(1.0, sum_of(distances.degrees) / time), outside = 0.5 * (1.0 - level);
   return {of_all * chi_square_quantile(outside, total) / total,
           of_all * chi_square_quantile(1.0 - outside, total) / total};
 }

@@ -35,9 +35,8 @@ double mean_distance(const SquaredDistances& distances, double of_all);
 
 /// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.
 /// Its degrees are divided by the autocorrelation time of the distances about their share of the mean, with a margin
-/// (cautious_time). If a single distance is not `chi_square`, the degrees are also divided by the dispersion (matching
-/// of moments: Satterthwaite 1946, Biometrics Bulletin 2). NaN without samples.
-Interval mean_distance_interval(const SquaredDistances& distances, double of_all, bool chi_square, double level = 0.95);
+/// (cautious_time). Single distances must be chi-square. NaN without samples.
+Interval mean_distance_interval(const SquaredDistances& distances, double of_all, double level);
 
 /// NIS of every sample on the scale of all signals, N. So one region applies to all samples. If signals are missing,
 /// the NIS is converted to the value for all signals with the same tail probability. NaN if no signal was measured.

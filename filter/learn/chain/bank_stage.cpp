@@ -11,10 +11,6 @@
 namespace modebank {
 namespace {
 
-void tell_of_shrinking(const std::string& whose, const Bank& bank, const Progress& progress) {
-  if (bank.shrinking.modes > 0) progress.warning(fmt::format("{}: {}", whose, shrinking_words(bank.shrinking)));
-}
-
 std::string worth_of(const LookAheadStage& stage) {
   if (stage.score == stage.score_before) return "accepted without a test, because no runs are left out";
   const std::string gain =
@@ -25,7 +21,6 @@ std::string worth_of(const LookAheadStage& stage) {
 }
 
 void tell_of(const Refinement& refined, const Progress& progress) {
-  tell_of_shrinking("refine", refined.bank, progress);
   for (const RefineCandidate& c : refined.candidates)
     progress.detail(
         fmt::format("refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
@@ -94,7 +89,6 @@ Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const Ba
       learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
                        std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
   const Bank& bank = refined.bank;
-  tell_of_shrinking("one_motion", bank, progress);
   const DriftRates& rates = bank.drift.rates;
   progress.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
                                 bank.drift.empty() ? ""

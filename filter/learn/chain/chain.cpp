@@ -7,6 +7,7 @@
 #include "filter/learn/chain/training_check.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/window_length.hpp"
+#include "modebank/base/eigen.hpp"
 
 namespace modebank {
 namespace {
@@ -102,14 +103,34 @@ class Run {
   }
 };
 
-/// Decides on the constant of linear models. Before lags are known, the structure has a few more than most plants.
+/// Means of the training runs: of each state, then of each input. Missing values do not count.
+std::vector<double> training_means(const Recording& recording) {
+  const Index n = recording.state_count(), m = recording.input_count();
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(n + m), count = sum;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    Eigen::MatrixXd values(n + m, run.samples());
+    values << run.state, run.input;
+    sum += values.array().isFinite().select(values, 0.0).rowwise().sum();
+    count += values.array().isFinite().cast<double>().matrix().rowwise().sum();
+  }
+  return to_vector(sum.cwiseQuotient(count.cwiseMax(1.0)));
+}
+
+/// Decides on the constant of linear models. With a constant, all sums are taken about the means of the training runs:
+/// priors, distances between windows and the drift of coefficients then do not depend on where zero lies. Before lags
+/// are known, the structure has a few more than most plants.
 LearningOptions with_intercept(const Recording& recording, LearningOptions options) {
-  if (!options.automatic_windows.intercept || !is_linear(options.window)) return options;
+  const bool automatic = options.automatic_windows.intercept;
+  if (!is_linear(options.window) || !(automatic || options.window.intercept)) return options;
+  options.window.centre = training_means(recording);
+  if (!automatic) return options;
   constexpr Index lags = 4, input_lags = 8;
   LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), options.window);
   if (options.searched_lags.state) structure.state_lags = lags;
   if (options.searched_lags.input) structure.input_lags = input_lags;
   options.window.intercept = needs_constant(recording, structure);
+  if (!options.window.intercept) options.window.centre.clear();
   return options;
 }
 

@@ -30,9 +30,11 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                    const std::optional<Lags>& lags) {
   OneModel one{windows.model, windows.structure, {}};
-  if (lags)
-    one.structure = {one.structure.states, one.structure.inputs, one.structure.intercept,
-                     (*lags)[0],           (*lags)[1],           one.structure.input_delay.with_latest((*lags)[2])};
+  if (lags) {
+    one.structure.state_lags = (*lags)[0];
+    one.structure.input_lags = (*lags)[1];
+    one.structure.input_delay = one.structure.input_delay.with_latest((*lags)[2]);
+  }
   const bool of_windows = one.structure == windows.structure;
   one.global = of_windows ? linear_global(recording, windows, motion) : fit_global(recording, one.structure);
   if (!of_windows) one.model = one.structure.lagged() ? "varx" : "linear";
@@ -92,9 +94,10 @@ std::string gain_words(const FoundTerms& found) {
   return found.terms.empty() ? "no terms gain" : fmt::format("{} terms as configured", found.terms.count());
 }
 
-std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure& structure,
-                              const CompetitorInputs& inputs, bool noise_by_input, const Progress& progress) {
+std::optional<Bank> nonlinear(const Recording& recording, LinearStructure structure, const CompetitorInputs& inputs,
+                              bool noise_by_input, const Progress& progress) {
   if (inputs.terms == "none") return {};
+  structure.centre.clear();  // terms are functions of the values themselves
   const Stopwatch watch;
   const FoundTerms found = lists_terms(inputs.terms) ? take_stated(recording, structure, inputs.terms)
                                                      : find_terms(recording, structure, inputs.window);
@@ -109,7 +112,6 @@ std::optional<Bank> nonlinear(const Recording& recording, const LinearStructure&
   RefineOptions em = inputs.em;
   em.noise_by_input = noise_by_input;
   Bank bank = learn_nonlinear(recording, found.structure, found.terms, em, inputs.filter);
-  if (bank.shrinking.modes > 0) progress.warning("nonlinear: " + shrinking_words(bank.shrinking));
   progress.progress(fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
                                 lags_of(found.structure), bank.mode_count(), watch.seconds()));
   return bank;

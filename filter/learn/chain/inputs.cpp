@@ -98,6 +98,7 @@ std::optional<StructureInputs> structure_inputs(const LearningOptions& options) 
   inputs.window.loss = window.loss;
   inputs.window.loss_scale = window.loss_scale;
   inputs.window.intercept = window.intercept;
+  inputs.window.centre = window.centre;
   inputs.window.max_iterations = window.max_iterations;
   return inputs;
 }

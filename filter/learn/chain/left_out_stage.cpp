@@ -25,7 +25,9 @@ using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 /// these runs give no terms, the terms of all training runs are fitted to them.
 Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs) {
   FoundTerms found;
-  if (!inputs.terms_stated) found = find_terms(training, learned.baseline->structure, inputs.window);
+  LinearStructure structure = learned.baseline->structure;
+  structure.centre.clear();
+  if (!inputs.terms_stated) found = find_terms(training, structure, inputs.window);
   if (found.terms.empty()) {
     found.structure = learned.nonlinear->structure;
     found.terms = learned.nonlinear->terms;

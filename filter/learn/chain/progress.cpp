@@ -1,7 +1,5 @@
 #include "filter/learn/chain/progress.hpp"
 
-#include <fmt/format.h>
-
 namespace modebank {
 namespace {
 
@@ -19,13 +17,6 @@ std::string of_all(Eigen::Index part, Eigen::Index all) { return grouped(part) +
 
 std::string learned_words(Eigen::Index learned, Eigen::Index all) {
   return "from " + of_all(learned, all) + " training transitions";
-}
-
-std::string shrinking_words(const Shrinking& shrinking) {
-  return fmt::format(
-      "{} mode{} moved {:.1f} % of the way to the model of all runs. Otherwise predictions many samples ahead would "
-      "grow without limit (their mean square by a factor of {:.4g} per sample)",
-      shrinking.modes, shrinking.modes == 1 ? "" : "s", 100.0 * shrinking.share, shrinking.growth);
 }
 
 }  // namespace modebank

@@ -4,8 +4,6 @@
 #include <chrono>
 #include <string>
 
-#include "filter/step/bank.hpp"
-
 namespace modebank {
 
 /// Receives messages about the progress of learning.
@@ -34,8 +32,5 @@ std::string of_all(Eigen::Index part, Eigen::Index all);
 
 /// "from 200,000 of 2,500,000 training transitions".
 std::string learned_words(Eigen::Index learned, Eigen::Index all);
-
-/// "3 modes drawn 32 % of the way to the model of all runs: ...".
-std::string shrinking_words(const Shrinking& shrinking);
 
 }  // namespace modebank

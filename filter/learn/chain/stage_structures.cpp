@@ -22,7 +22,8 @@ LinearStructure structure_of(const StructureScore& s, const Recording& recording
           window.intercept,
           s.state_lags,
           s.input_lags,
-          window.input_delay.with_latest(s.input_delay)};
+          window.input_delay.with_latest(s.input_delay),
+          window.centre};
 }
 
 using Rows = std::vector<StructureScore>;

@@ -107,8 +107,7 @@ HeldNoise hold_at_bounds(const NoiseSearch& search, const Bank& exact, Likelihoo
 }  // namespace
 
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
-  // All samples have equal weight, because this likelihood is compared with the scores of other filters.
-  const Recording training = unweighted_training_part(recording);
+  const Recording training = training_part(recording);
   require_transitions(training.transitions(Role::train) > 0);
   const Index n = structure.states, p = structure.parameters();
   Bank bank = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));

@@ -16,7 +16,7 @@
 namespace modebank {
 
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
-  const Transitions transitions = stack_training(unweighted_training_part(recording), structure);
+  const Transitions transitions = stack_training(recording, structure);
   require_transitions(transitions.count() > 0);
   const Eigen::VectorXd scale =
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();

@@ -117,7 +117,8 @@ NoiseFactor fit(const TrainingTransitions& transitions, const MotionTerms& terms
   if (E.cols() == 0) return {};
   const auto N = static_cast<double>(rows.count());
   NoiseFactor factor{candidate_directions(s, theta), {}, 0.0};
-  MatrixXd z = (rows.regressors.leftCols(factor.directions.cols()) * factor.directions.transpose()).cwiseAbs();
+  MatrixXd z = rows.regressors.leftCols(factor.directions.cols()).rowwise() + s.acting_centre().transpose();
+  z = (z * factor.directions.transpose()).cwiseAbs();
   std::vector<Index> moving;
   VectorXd mean(z.cols()), sd(z.cols());
   for (Index i = 0; i < z.cols(); ++i) {
@@ -181,7 +182,7 @@ NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& 
 FoundNoiseFactor find_noise_factor(const Recording& all, const LinearStructure& structure, Index folds,
                                    std::uint64_t seed) {
   FoundNoiseFactor found;
-  if (all.quantum.size() > 0 || all.weighted() || folds < 2) return found;
+  if (all.quantum.size() > 0 || folds < 2) return found;
   const std::optional<Recording> part = learning_part(all, most_transitions, seed);
   const Recording training = training_part(part ? *part : all);
   // The runs that chose the factor gain more than left-out runs would. If even the runs that chose it gain too little,

@@ -38,7 +38,7 @@ struct FoundNoiseFactor {
 };
 
 /// Compares one motion whose noise switches between four levels with and without the factor. The factor is accepted if
-/// the rule for additions accepts it on runs that were left out (left_out/rule.hpp). Rounded or weighted samples are
+/// the rule for additions accepts it on runs that were left out (left_out/rule.hpp). Rounded samples are
 /// not tested. Learns from at most 20,000 transitions drawn by the seed.
 FoundNoiseFactor find_noise_factor(const Recording& recording, const LinearStructure& structure, Eigen::Index folds,
                                    std::uint64_t seed);

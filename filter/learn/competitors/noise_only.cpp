@@ -56,7 +56,7 @@ Regression regression(const Recording& recording, const LinearStructure& structu
     const RobustRegression fit = huber_regression(transitions);
     return {fit.coefficients, fit.standard_error};
   }
-  const GlobalModel fit = fit_global(unweighted_training_part(recording), structure);
+  const GlobalModel fit = fit_global(recording, structure);
   const Index q = transitions.regressors.cols(), n = transitions.increments.cols();
   return {fit.theta.reshaped(q, n), fit.covariance.diagonal().cwiseSqrt().reshaped(q, n)};
 }
@@ -80,7 +80,7 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
                         Index levels, const NoiseFactor& factor) {
   Bank bank = bank_frame(recording, structure, R);
   bank.noise_factor = factor;
-  Transitions transitions = unweighted(stack_training(recording, structure));
+  Transitions transitions = stack_training(recording, structure);
   require_transitions(transitions.count() > 0);
   divide_by_noise(factor, structure, transitions);
   const Regression fit = regression(recording, structure, transitions);
@@ -100,13 +100,12 @@ namespace {
 /// Improves theta and noise levels of rounded states by the likelihood of their intervals. The search starts from the
 /// residuals of rounded values, which include the rounding.
 Bank by_intervals(Bank bank, const Recording& recording) {
-  const Recording unweighted = unweighted_training_part(recording);
   FreeParameters free;
   // The runs do not determine some directions. These may have any unit, because nothing depends on them.
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
       [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;
-  return maximise_likelihood({unweighted, FilterOptions{}, std::nullopt, true}, free, bank, {60, 1e-6}).bank;
+  return maximise_likelihood({recording, FilterOptions{}, std::nullopt, true}, free, bank, {60, 1e-6}).bank;
 }
 
 }  // namespace

@@ -8,8 +8,7 @@
 
 namespace modebank {
 
-/// Membership of each training transition in each mixture component, N x K. The row of a usable transition sums to one,
-/// or to its sample weight.
+/// Membership of each training transition in each mixture component, N x K. The row of a usable transition sums to one.
 /// - Covered transition: the row is the mean responsibility of the clustered windows that cover the transition.
 /// - Other transition: the row is that of the nearest clustered window of its run (the earlier one on a tie).
 /// - Run without clustered windows: the row holds the mixture weights.

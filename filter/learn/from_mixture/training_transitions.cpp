@@ -24,21 +24,16 @@ std::vector<RunRows> number_rows(const Recording& recording) {
   return runs;
 }
 
-/// Sets rows to zero if they are not finite or have no weight.
+/// Sets rows to zero if they are not finite.
 void blank_unusable(TrainingTransitions& transitions) {
   Transitions& data = transitions.data;
-  const bool weighted = data.weight.size() > 0;
-  transitions.usable = weighted ? data.weight : Eigen::VectorXd::Ones(data.count());
+  transitions.usable = Eigen::VectorXd::Ones(data.count());
   for (Index k = 0; k < data.count(); ++k) {
-    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite() && transitions.usable(k) > 0.0)
-      continue;
+    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite()) continue;
     data.regressors.row(k).setZero();
     data.increments.row(k).setZero();
     transitions.usable(k) = 0.0;
   }
-  data.weight.resize(0);
-  const Index usable = (transitions.usable.array() > 0.0).count();
-  if (weighted && usable > 0) transitions.usable *= static_cast<double>(usable) / transitions.usable.sum();
 }
 
 }  // namespace
@@ -54,8 +49,9 @@ Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure
   if (factor.empty()) return {};
   Eigen::VectorXd logs(rows.count());
   const Index n = structure.dimension(), m = structure.acting_inputs();
+  const Eigen::RowVectorXd centre = structure.acting_centre();
   for (Index k = 0; k < rows.count(); ++k) {
-    const auto phi = rows.regressors.row(k);
+    const Eigen::RowVectorXd phi = rows.regressors.row(k).head(n + m) + centre;
     logs(k) = factor.log_at(phi.head(n), phi.segment(n, m));
     const double root = std::exp(-0.5 * logs(k));
     rows.regressors.row(k) *= root;
@@ -76,12 +72,10 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
                           {Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)},
                           {},
                           number_rows(recording)};
-  if (recording.weighted()) all.data.weight = Eigen::VectorXd::Ones(N);
   for (const RunRows& rows : all.runs) {
     const Transitions run = stack_transitions(recording.runs[rows.run], 0, rows.count, structure);
     all.data.regressors.middleRows(rows.first, rows.count) = run.regressors;
     all.data.increments.middleRows(rows.first, rows.count) = run.increments;
-    if (run.weight.size() > 0) all.data.weight.segment(rows.first, rows.count) = run.weight;
   }
   all.log_noise_factor = divide_by_noise(factor, structure, all.data);
   blank_unusable(all);
@@ -123,12 +117,6 @@ Recording training_part(const Recording& recording) {
   Recording training{recording.states, recording.inputs, {}, recording.quantum};
   std::copy_if(recording.runs.begin(), recording.runs.end(), std::back_inserter(training.runs),
                [](const Trajectory& run) { return run.role == Role::train; });
-  return training;
-}
-
-Recording unweighted_training_part(const Recording& recording) {
-  Recording training = training_part(recording);
-  for (Trajectory& run : training.runs) run.weight.resize(0);
   return training;
 }
 

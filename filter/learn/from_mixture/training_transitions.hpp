@@ -18,12 +18,11 @@ struct RunRows {
 };
 
 /// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row, so
-/// that positions match the run. Such a row holds zeros and is not usable. A row of sample weight zero is also not
-/// usable. Sample weights are stored in `usable` and not applied to the rows.
+/// that positions match the run. Such a row holds zeros and is not usable.
 struct TrainingTransitions {
   LinearStructure structure;
   Transitions data;           ///< N rows
-  Eigen::VectorXd usable;     ///< N, 0 or the sample weight (1 without weights; mean 1 over usable rows)
+  Eigen::VectorXd usable;     ///< N, 1 where the row is usable, otherwise 0
   std::vector<RunRows> runs;  ///< training runs, in the order of the recording
 
   /// N, logarithm of the noise factor. Each row was divided by the square root of its factor, so that all rows have
@@ -76,7 +75,5 @@ inline Eigen::MatrixXd coefficients(const LinearStructure& s, const Eigen::Vecto
 
 /// A copy of the recording with the training runs only.
 Recording training_part(const Recording& recording);
-/// Like training_part, but all samples have equal weights.
-Recording unweighted_training_part(const Recording& recording);
 
 }  // namespace modebank

@@ -35,7 +35,7 @@ double least_worth(double samples);
 /// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, drift, a
 /// look-ahead fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
 /// which is capped at `most_error`. `samples`: number of samples of each left-out run.
-/// Other rules are worse (docs/results/rule.md). The standard error alone accepts additions to three of ten systems
+/// Other rules are worse. The standard error alone accepts additions to three of ten systems
 /// that have none. A t-test over six runs rejects drift worth 0.06 nats in four of five systems.
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());

@@ -4,8 +4,6 @@
 
 #include <cmath>
 
-#include "filter/learn/likelihood/training_likelihood.hpp"
-
 namespace modebank {
 namespace {
 
@@ -60,18 +58,11 @@ Eigen::MatrixXd information_of_memory(const BankCoordinates& around, const Switc
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look) {
   SampleGradients result{Eigen::VectorXd::Zero(around.size()), Eigen::MatrixXd::Zero(around.size(), around.size())};
-  const double unit = mean_training_weight(recording);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::train || run.samples() < 2) continue;
     const Eigen::MatrixXd gradients = gradients_of_run(around, steps, run, filter, look);
-    if (run.weight.size() == 0) {
-      result.sum += gradients.colwise().sum().transpose();
-      result.information.noalias() += gradients.transpose() * gradients;
-    } else {
-      const Eigen::MatrixXd weighted = (run.weight / unit).asDiagonal() * gradients;
-      result.sum += weighted.colwise().sum().transpose();
-      result.information.noalias() += weighted.transpose() * gradients;
-    }
+    result.sum += gradients.colwise().sum().transpose();
+    result.information.noalias() += gradients.transpose() * gradients;
   }
   return result;
 }

@@ -23,13 +23,13 @@ struct SampleGradients {
                                 ///< the model is true
 };
 
-/// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. A sample of weight w,
-/// relative to the mean weight, counts as w samples. `look`: score of look-ahead learning.
+/// Gradients by central differences with `steps` (one per coordinate) in the bank's filter. `look`: score of look-ahead
+/// learning.
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// Gradients by the switching regression. They require exactly measured states (R = 0) and equal sample weights. The
-/// densities equal those of the filter, but cost far less, especially with many lags.
+/// Gradients by the switching regression. They require exactly measured states (R = 0). The densities equal those of
+/// the filter, but cost far less, especially with many lags.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                        const TrainingTransitions& transitions);
 

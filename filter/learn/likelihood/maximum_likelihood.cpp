@@ -165,7 +165,7 @@ bool is_finite(const Bank& bank) {
 
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
-  const double likelihood = weighted_training_log_likelihood(bank, recording, filter, look);
+  const double likelihood = training_log_likelihood(bank, recording, filter, look);
   return prior ? likelihood + log_prior(bank) : likelihood;
 }
 

@@ -61,8 +61,8 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
 bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
   const Bank& bank = around.origin();
   return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
-         target.filter.noise == FilterNoise::gaussian && !target.recording.weighted() && !bank.is_quantised() &&
-         bank.drift.empty() && bank.terms.empty();
+         target.filter.noise == FilterNoise::gaussian && !bank.is_quantised() && bank.drift.empty() &&
+         bank.terms.empty();
 }
 
 /// Empty if the information matrix is singular.

@@ -15,11 +15,11 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
 
 /// The bank with standard errors of its free parameters among theta, Q, T and R. The covariance of theta becomes the
 /// parameter covariance of the modes. The errors come from the inverse of the observed information (information.hpp)
-/// plus the information of the prior. The inverse is for all parameters together, in the target's filter and with its
-/// sample weights. So the errors include the uncertainty of the modes and, for R > 0, of the states. The fit's expected
-/// sums (Louis 1982's complete information) do not include this uncertainty. The model is assumed true. Long recordings
-/// are reduced to stretches of all training runs (learning_part.hpp), and the information is scaled up. If the
-/// information is singular, the errors come from the complete information, and those of R are NaN.
+/// plus the information of the prior. The inverse is for all parameters together, in the target's filter. So the errors
+/// include the uncertainty of the modes and, for R > 0, of the states. The fit's expected sums (Louis 1982's complete
+/// information) do not include this uncertainty. The model is assumed true. Long recordings are reduced to stretches of
+/// all training runs (learning_part.hpp), and the information is scaled up. If the information is singular, the errors
+/// come from the complete information, and those of R are NaN.
 ///
 /// Requires target.prior; `free` is all_parameters of the same bank.
 Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& free, const SwitchingSums& complete,

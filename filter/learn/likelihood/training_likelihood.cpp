@@ -17,41 +17,15 @@ double training_log_likelihood(const Bank& bank, const Recording& recording, con
   return std::accumulate(of_run.begin(), of_run.end(), 0.0);
 }
 
-double weighted_training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
-                                        const LookAhead& look) {
-  if (!recording.weighted()) return training_log_likelihood(bank, recording, options, look);
-  const double unit = mean_training_weight(recording);
-  double sum = 0.0;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != Role::train) continue;
-    const Eigen::ArrayXd scores = look_ahead_scores(bank, run, options, look);
-    const Eigen::ArrayXd known = scores.isNaN().select(0.0, scores);
-    sum += run.weight.size() > 0 ? (known * run.weight.array()).sum() / unit : known.sum();
-  }
-  return sum;
-}
-
 BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options) {
   std::vector<const Trajectory*> runs;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train) runs.push_back(&run);
-  const double unit = mean_training_weight(recording);
   std::vector<BankGradient> of_run(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
-    of_run[i] = log_likelihood_gradient(bank, *runs[i], runs[i]->weight / unit, options);
-  });
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { of_run[i] = log_likelihood_gradient(bank, *runs[i], options); });
   for (std::size_t i = 1; i < of_run.size(); ++i) of_run[0] += of_run[i];
   return std::move(of_run.at(0));
-}
-
-double mean_training_weight(const Recording& recording) {
-  double sum = 0.0, count = 0.0;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train && run.weight.size() > 0) {
-      sum += run.weight.tail(run.transitions()).sum();
-      count += static_cast<double>((run.weight.tail(run.transitions()).array() > 0.0).count());
-    }
-  return sum > 0.0 ? sum / count : 1.0;
 }
 
 }  // namespace modebank

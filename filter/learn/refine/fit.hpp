@@ -16,7 +16,7 @@ struct RefineStart {
   std::string name;
   SwitchingRegression model;
   double noise_transitions = 0.0;
-  double theta_transitions = 0.0;  ///< weight of the prior towards one motion, in transitions (switching/shrinkage.hpp)
+  double theta_transitions = 0.0;  ///< weight of the prior towards one motion, in transitions (switching/starts.hpp)
 };
 
 /// The model accepted so far, with all additions. Each refinement step takes a Fit and returns a Fit. A Fit also

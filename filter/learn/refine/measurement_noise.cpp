@@ -10,7 +10,7 @@
 
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
-#include "filter/learn/switching/shrinkage.hpp"
+#include "filter/learn/switching/starts.hpp"
 #include "filter/learn/switching/transition_regression.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/linalg.hpp"

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"
@@ -70,13 +69,7 @@ bool SplitFits::converged() const {
 
 std::vector<Bank> SplitFits::banks() const {
   std::vector<Bank> banks;
-  for (std::size_t s = 0; s < fits_.size(); ++s) {
-    const SwitchingRegression& model = fits_[s]->model();
-    const auto stable = in_.options.screen && in_.options.look_ahead > 1
-                            ? shrunk_to_stability(in_.frame.structure, model, priors_[s].mean, refine_tuning)
-                            : std::nullopt;
-    banks.push_back(with_modes(in_.frame, stable ? stable->model : model));
-  }
+  for (const auto& fit : fits_) banks.push_back(with_modes(in_.frame, fit->model()));
   return banks;
 }
 

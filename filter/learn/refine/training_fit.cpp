@@ -6,7 +6,6 @@
 
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/switching/mode_screening.hpp"
-#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/tuning.hpp"
 
@@ -31,11 +30,6 @@ TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& 
   for (Index i = 0; i < iterations && !em.converged(); ++i) em.step();
   TrainingFit fit{em.model(), em.posterior(), in.frame.screened, em.objective()};
   while (in.options.screen) {
-    if (auto stable = shrunk_to_stability(in.transitions.structure, fit.model, prior.mean, refine_tuning)) {
-      fit.model = std::move(stable->model);
-      fit.shrinking = stable->shrinking;
-      fit.posterior = smooth_modes(in.transitions, fit.model);
-    }
     std::optional<ScreenedModel> rest =
         without_worst_mode(in.transitions, fit.posterior, fit.model, in.options.one_theta, refine_tuning);
     if (!rest) break;
@@ -44,7 +38,6 @@ TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& 
     for (Index i = 0; i < refine_tuning.iterations_after_screening; ++i) others.step();
     fit.model = others.model();
     fit.posterior = others.posterior();
-    fit.shrinking = {};
   }
   return fit;
 }
@@ -52,7 +45,6 @@ TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& 
 Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation) {
   Bank bank = with_modes(in.frame, fit.model);
   bank.screened = fit.screened;
-  bank.shrinking = fit.shrinking;
   bank.noise_adaptation = adaptation;
   const Eigen::VectorXd transitions =
       (fit.posterior.probability.transpose() * in.transitions.usable).cwiseMax(std::numeric_limits<double>::min());

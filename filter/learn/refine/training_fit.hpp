@@ -37,7 +37,6 @@ struct TrainingFit {
   ModePosterior posterior;
   std::vector<ScreenedMode> screened;  ///< modes removed from the frame and from the fit
   std::vector<double> objective;       ///< penalised log-likelihood before each iteration, until modes are removed
-  Shrinking shrinking = {};            ///< shrinkage of the present model
 };
 
 /// Runs expectation-maximisation from `model` for a number of iterations, or fewer if the objective converges. Then

@@ -5,6 +5,7 @@
 #include <optional>
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>
+#include <utility>
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/transition_learning.hpp"
@@ -66,6 +67,19 @@ SwitchingRegression start_from_stretches(const TrainingTransitions& transitions,
   model.theta = fitted.theta;
   model.Q = fitted.Q;
   return model;
+}
+
+SwitchingPrior towards_one_motion(SwitchingPrior prior, const TrainingTransitions& transitions,
+                                  SwitchingRegression model, double theta_transitions, const RefineTuning& tuning) {
+  if (!(theta_transitions > 0.0)) return prior;
+  model.logit = {};
+  model.theta.colwise() = prior.mean;
+  ExpectationMaximisation one(transitions, prior, {.one_theta = true, .alternations = tuning.alternations},
+                              std::move(model));
+  for (Index i = 0; i < tuning.one_motion_iterations && !one.converged(); ++i) one.step();
+  prior.mean = one.model().theta.col(0);
+  prior.information += theta_transitions * unit_information(transitions, prior.noise, tuning.least_information);
+  return prior;
 }
 
 }  // namespace modebank

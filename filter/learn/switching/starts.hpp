@@ -19,6 +19,12 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
 Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
                                  double least_information);
 
+/// The prior with every mode's theta shrunk towards one motion. theta is normal about the theta that all modes of
+/// `model` would share, fitted to these transitions. The prior has the information of `theta_transitions` additional
+/// transitions. With 0 the prior does not change. With infinity all modes share theta and differ only in noise.
+SwitchingPrior towards_one_motion(SwitchingPrior prior, const TrainingTransitions& transitions,
+                                  SwitchingRegression model, double theta_transitions, const RefineTuning& tuning);
+
 /// A start with `modes` modes. Each mode is fitted to a random stretch of `length` transitions, with the prior.
 /// Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index` derives its
 /// generator from the seed.

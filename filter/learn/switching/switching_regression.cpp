@@ -17,7 +17,7 @@
 namespace modebank {
 namespace {
 
-/// log N(r_k; 0, Q) of every transition under one mode, times the sample weight of the transition.
+/// log N(r_k; 0, Q) of every transition under one mode; 0 where it is not usable.
 Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
                               const Eigen::MatrixXd& Q) {
   const Eigen::MatrixXd r =
@@ -141,6 +141,7 @@ SwitchingRegression switching_model(const Bank& bank) {
   }
   model.transition = bank.transition.matrix();
   model.logit = bank.transition_logit;
+  if (!model.logit.empty()) model.logit.reference -= bank.structure.acting_centre();
   model.initial = bank.initial_probability;
   return model;
 }
@@ -155,6 +156,7 @@ Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
                                    1.0 / static_cast<double>(K)));
   bank.transition = TransitionMatrix(model.transition);
   bank.transition_logit = model.logit;
+  if (!model.logit.empty()) bank.transition_logit.reference += bank.structure.acting_centre();
   bank.initial_probability = model.initial;
   return bank;
 }

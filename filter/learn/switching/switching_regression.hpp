@@ -56,7 +56,7 @@ struct ModePosterior {
 
 /// Forward-backward algorithm over every run. Each step is scaled by the largest density of a possible mode (log
 /// domain). An unusable transition gives no information about its mode. Rows before a run's first usable transition are
-/// zero. A density is raised to the power of the sample weight. The log-likelihood equals that of the IMM filter for R
+/// zero. The log-likelihood equals that of the IMM filter for R
 /// = 0.
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model);
 

@@ -35,6 +35,7 @@ void set_coefficients(const LinearStructure& s, const Theta& theta, Mode& mode) 
     }
     for (Eigen::Index i = 0; i < m; ++i) mode.B(a, i) = theta(a * r + n + i);
     if (s.intercept) mode.c(a) = theta(a * r + r - 1);
+    for (Eigen::Index i = 0; !s.centre.empty() && i < n + m; ++i) mode.c(a) -= theta(a * r + i) * s.centre_of(i);
   }
 }
 

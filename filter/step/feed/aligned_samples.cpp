@@ -26,10 +26,6 @@ void AlignedSamples::push(const TimedSample& sample) {
   if (pushed_ == 0 && std::abs(sample.time_s) >= exact_below_s) origin_s_ = std::floor(sample.time_s);
   const double at_s = origin_s_ == 0.0 ? sample.time_s : sample.time_s - origin_s_ + sample.rest_s;
   if (pushed_ == 0) first_s_ = at_s + std::max(0.0, alignment_.lag_s);
-  if (pushed_ == 1 && std::isfinite(before_s_)) {
-    ready_s_ = first_s_ = before_s_ - origin_s_;
-    steps_ = 1.0;
-  }
   if (pushed_ > 0) {
     constexpr double weight = 0.1;
     const double since_s = at_s - newest_at_s();
@@ -64,8 +60,7 @@ double AlignedSamples::due_s() const {
 }
 
 const TimedSample* AlignedSamples::next() {
-  const bool waits = alignment_.rate_hz > 0.0 && (std::isfinite(before_s_) || alignment_.averaged.any());
-  if (waits && pushed_ < 2) return nullptr;
+  if (alignment_.rate_hz > 0.0 && alignment_.averaged.any() && pushed_ < 2) return nullptr;
   const double early_s = first_s_ - tolerance_s(first_s_, spacing_s_);
   while (!resamples_ && due_s() < early_s) ++next_;
   forget();

@@ -47,10 +47,6 @@ class AlignedSamples {
   const TimedSample* next();
   /// Forgets all samples.
   void restart() { *this = AlignedSamples(alignment_); }
-  /// Call before the first sample, to continue the times at the rate from an earlier sample.
-  void go_on_after(double time_s) { before_s_ = time_s; }
-  /// Time of the last sample added; NaN if no sample was added.
-  double newest_s() const { return samples_.empty() ? not_a_number : samples_.back().sample.time_s; }
 
  private:
   struct Kept {
@@ -64,7 +60,6 @@ class AlignedSamples {
   std::size_t next_ = 0;      ///< index of the next output sample; used if samples keep their times
   std::size_t pushed_ = 0;
   bool resamples_ = false, averages_ = false;
-  double before_s_ = not_a_number;  ///< time of an earlier sample, as given by the user
   double first_s_ = 0.0, spacing_s_ = 0.0;
   std::deque<double> recent_s_;  ///< time steps; needed until the sample period is known
   double steps_ = 0.0;           ///< number of steps at the rate, from first_s_ to the next output sample

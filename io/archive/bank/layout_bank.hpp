@@ -7,6 +7,7 @@
 #include "io/archive/bank/stored_bank.hpp"
 #include "io/archive/bank/units.hpp"
 #include "io/archive/groups/columns.hpp"
+#include "modebank/base/eigen.hpp"
 
 /// The layout of banks; see io/archive/layout.hpp.
 namespace modebank::layout {
@@ -36,6 +37,7 @@ void exchange_delays(Io& io, D& delays, Eigen::Index inputs) {
 /// - inputs: number of input channels
 /// - state_lags: samples of the state that predict the next one
 /// - input_lags: samples of the input that act on one transition
+/// - centre: means of states and inputs about which `parameters` are taken; `c` of a bank is not changed
 template <class Io, class S, class Name>
 void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("model", model);
@@ -45,6 +47,10 @@ void exchange_structure(Io& io, S& structure, Name& model) {
   io.attribute("state_lags", structure.state_lags, rule::lags);
   io.attribute("input_lags", structure.input_lags, rule::lags);
   exchange_delays(io, structure.input_delay, structure.inputs);
+  io.through(
+      structure.centre, [](const std::vector<double>& of) { return Eigen::VectorXd(view(of)); },
+      [](const Eigen::VectorXd& stored) { return to_vector(stored); },
+      [&](auto& stored) { io.optional_field("centre", stored, {"channels"}, {}, rule::finite); });
 }
 
 /// Names and units of a motion model's parameters; empty lists for linear models.
@@ -75,8 +81,7 @@ void exchange_terms(Io& io, S& stored) {
   io.optional_field("term_high", stored.term_high, {"V"}, {}, rule::finite);
   io.optional_field("term_unit", stored.term_unit, {"V"}, {}, rule::positive);
   io.optional_field("term_coefficients", stored.bend, {"K", "n_y", "T"}, {}, rule::finite);
-  io.optional_field("term_coefficients_standard_error", stored.bend_standard_error, {"K", "n_y", "T"}, {},
-                    rule::not_negative_or_missing);
+  io.optional_field("term_coefficients_standard_error", stored.bend_standard_error, {"K", "n_y", "T"}, {});
 }
 
 /// The filter measures the recorded states. If there are equally many outputs and states, outputs have the states'
@@ -111,37 +116,34 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   const Unit parameters = parameter_units(stored.structure, states, inputs);
   const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
   const Unit outputs(states.begin(), states.begin() + (measured ? stored.C.rows() : 0));
-  const Rule& error = rule::not_negative_or_missing;
   io.field("weight", stored.weight, {"K"}, {}, rule::share);
   io.field("c", stored.c, {"K", "n"}, states, rule::finite);
   io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states), rule::finite);
   io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs), rule::finite);
   io.field("Q", stored.Q, {"K", "n", "n"}, outer(states), rule::covariances);
   io.field("parameters", stored.parameters, {"K", "p"}, parameters, rule::finite_or_missing);
-  io.optional_field("parameter_covariance", stored.parameter_covariance, {"K", "p", "p"}, outer(parameters),
-                    rule::computed_covariances);
-  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters, error);
-  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states), error);
-  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(),
-                    error);
-  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"}, {}, error);
+  io.optional_field("parameter_covariance", stored.parameter_covariance, {"K", "p", "p"}, outer(parameters));
+  io.optional_field("parameter_standard_error", stored.standard_error, {"K", "p"}, parameters);
+  io.optional_field("Q_standard_error", stored.Q_standard_error, {"K", "n", "n"}, outer(states));
+  io.optional_field("R_standard_error", stored.R_standard_error, {"n_y", "n_y"}, measured ? outer(outputs) : Unit());
+  io.optional_field("transition_standard_error", stored.transition_standard_error, {"K", "K"});
   io.field("C", stored.C, {"n_y", "n"}, measured ? ratios(outputs, states) : Unit(), rule::finite);
   io.field("R", stored.R, {"n_y", "n_y"}, measured ? outer(outputs) : Unit(), rule::covariances);
   io.optional_field("quantum", stored.quantum, {"n_y"}, outputs, rule::not_negative);
   if constexpr (!Io::reads) io.set_size("inputs", static_cast<std::size_t>(stored.structure.inputs));
   const Letters over_inputs{"K", "n_y", "inputs"};
-  io.optional_field("steady_gain", stored.steady_gain, over_inputs, {}, rule::finite_or_missing);
-  io.optional_field("steady_gain_standard_error", stored.steady_gain_error, over_inputs, {}, error);
-  io.optional_field("response_time_s", stored.response_time_s, over_inputs, {"s"}, error);
-  io.optional_field("response_time_s_standard_error", stored.response_time_error_s, over_inputs, {"s"}, error);
-  io.optional_field("settling_time_s", stored.settling_time_s, over_inputs, {"s"}, error);
-  io.optional_field("settling_time_s_standard_error", stored.settling_time_error_s, over_inputs, {"s"}, error);
-  io.optional_field("overshoot", stored.overshoot, over_inputs, {}, error);
-  io.optional_field("overshoot_standard_error", stored.overshoot_error, over_inputs, {}, error);
+  io.optional_field("steady_gain", stored.steady_gain, over_inputs);
+  io.optional_field("steady_gain_standard_error", stored.steady_gain_error, over_inputs);
+  io.optional_field("response_time_s", stored.response_time_s, over_inputs, {"s"});
+  io.optional_field("response_time_s_standard_error", stored.response_time_error_s, over_inputs, {"s"});
+  io.optional_field("settling_time_s", stored.settling_time_s, over_inputs, {"s"});
+  io.optional_field("settling_time_s_standard_error", stored.settling_time_error_s, over_inputs, {"s"});
+  io.optional_field("overshoot", stored.overshoot, over_inputs);
+  io.optional_field("overshoot_standard_error", stored.overshoot_error, over_inputs);
   io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
-  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"}, {}, error);
+  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
   io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
   io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
@@ -150,7 +152,7 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.attribute_unless(0.0, "noise_offset", stored.noise_offset, rule::finite);
   exchange_terms(io, stored);
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
-  io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion, error);
+  io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);
   exchange_structure(io, stored.structure, stored.model);
   if constexpr (Io::reads)
     io.finish([&] { stored.structure = restore_structure(stored.structure, io.size("n"), io.size("p")); });
@@ -162,9 +164,6 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
 /// - dt_s: period of a step [s]
 /// - noise_forgetting: forgetting factor of adaptive noise
 /// - noise_prior_samples: prior samples of adaptive noise
-/// - shrunk_modes: modes that were shrunk towards one motion for stability
-/// - shrunk_share: share of the shrinkage
-/// - shrunk_growth: growth of the mean square of these modes before shrinkage
 /// - screened: components that did not become modes
 /// - spectral_radius: spectral radius of I + A
 template <class Io, class B>
@@ -178,15 +177,12 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
       io.attribute_texts("equations", equations(bank.structure, bank.modes.front().model, bank.terms,
                                                 bank.modes.front().bend, bank.state_names, bank.input_names));
   io.attribute("dt_s", bank.dt_s, rule::positive);
-  io.optional_attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
-  io.optional_attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
-  io.attribute_unless(std::ptrdiff_t{0}, "shrunk_modes", bank.shrinking.modes, rule::not_negative);
-  io.attribute_unless(0.0, "shrunk_share", bank.shrinking.share, rule::share);
-  io.attribute_unless(0.0, "shrunk_growth", bank.shrinking.growth, rule::not_negative);
+  io.attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
+  io.attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
-  io.table("screened", bank.screened, column("component", &ScreenedMode::component).obeying(rule::not_negative),
-           share_column("weight", &ScreenedMode::weight),
-           amount_column("spectral_radius", &ScreenedMode::spectral_radius), column("reason", &ScreenedMode::reason));
+  io.table("screened", bank.screened, column("component", &ScreenedMode::component),
+           column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),
+           column("reason", &ScreenedMode::reason));
   const Unit states = units.states(bank.state_names), inputs = units.inputs(bank.input_names);
   io.through(
       bank, store_bank, [&](const StoredBank& stored) { return restore_bank(stored, bank); },

@@ -141,8 +141,7 @@ void check_schema(const hdf5::Handle& root) {
   if (major > major_version(schema_version))
     throw DataError("the archive's schema " + version + " is newer than " + schema_version +
                     ", which this version of modebank reads");
-  if (major < major_version(schema_version))
-    throw DataError("made by modebank 0.1; make the archive again with modebank run");
+  if (major < major_version(schema_version)) throw DataError("made by an older modebank; run again");
 }
 
 }  // namespace

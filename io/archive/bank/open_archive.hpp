@@ -12,7 +12,7 @@
 
 namespace modebank {
 
-inline constexpr const char *archive_format = "modebank", *schema_version = "3.0";
+inline constexpr const char *archive_format = "modebank", *schema_version = "4.0";
 
 /// The HDF5 user block before an archive's content. Bytes 0-63 are the SHA-256 of all bytes after the block, in
 /// lowercase hex. The other bytes are zero.

@@ -17,7 +17,6 @@ struct Column {
   std::string name;
   T Row::*member;
   std::string unit = {};
-  bool optional = false;  ///< archives of earlier minor versions lack this column; the member then keeps its default
   Rule rule = rule::any;  ///< rule for the column's values
 
   Column obeying(const Rule& other) const {
@@ -30,23 +29,6 @@ struct Column {
 template <class Row, class T>
 Column<Row, T> column(std::string name, T Row::*member, std::string unit = {}) {
   return {std::move(name), member, std::move(unit)};
-}
-
-/// A column of shares or probabilities.
-template <class Row, class T>
-Column<Row, T> share_column(std::string name, T Row::*member, std::string unit = {}) {
-  return column(std::move(name), member, std::move(unit)).obeying(rule::share_or_missing);
-}
-
-/// A column of values >= 0, such as errors, distances or lengths.
-template <class Row, class T>
-Column<Row, T> amount_column(std::string name, T Row::*member, std::string unit = {}) {
-  return column(std::move(name), member, std::move(unit)).obeying(rule::not_negative_or_missing);
-}
-
-template <class Row, class T>
-Column<Row, T> later_column(std::string name, T Row::*member) {
-  return {std::move(name), member, {}, true};
 }
 
 /// The value as the file stores it. Booleans are 8-bit integers, because MATLAB and Octave read HDF5's own booleans as
@@ -118,7 +100,6 @@ inline std::string broken(const Rule& rule, const Sizes& sizes, const hdf5::Tabl
 template <class Row, class T>
 void decode(const hdf5::TableRows& read, const Column<Row, T>& column, const Sizes& sizes, bool judged,
             std::vector<Row>& rows) {
-  if (column.optional && !hdf5::has_column(read.table, column.name)) return;
   hdf5::TableColumn stored = encode(std::vector<Row>(), column);
   hdf5::read_column(read, stored);
   if constexpr (std::is_same_v<T, Eigen::VectorXd>) {

@@ -69,12 +69,8 @@ class GroupReader {
     });
   }
   template <class T>
-  void optional_attribute(const std::string& name, T& value, const Rule& rule = rule::any) {
-    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value, rule);
-  }
-  template <class T>
   void attribute_unless(const T& /*absent*/, const std::string& name, T& value, const Rule& rule = rule::any) {
-    optional_attribute(name, value, rule);
+    if (hdf5::has_attribute(group_.id(), name)) attribute(name, value, rule);
   }
   void constant_attribute(const std::string& name, const std::string& expected);
   void attribute_texts(const std::string& name, std::vector<std::string>& texts);
@@ -103,22 +99,21 @@ class GroupReader {
   }
   /// Reads an array that was written block by block.
   template <class Source>
-  void through_rows(const std::string& name, Source& values, const Letters& letters, const Rule& rule = rule::any) {
+  void through_rows(const std::string& name, Source& values, const Letters& letters) {
     Eigen::MatrixXd all;
-    field(name, all, letters, {}, rule);
+    field(name, all, letters);
     values = Source(std::move(all));
   }
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>&, const Letters& letters,
-                     const Unit& = {}, const Rule& rule = rule::any) {
+                     const Unit& = {}) {
     Derived unused;
-    if (verifies()) field(name, unused, letters, {}, rule);
+    if (verifies()) field(name, unused, letters);
   }
   template <class Make>
-  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {},
-                              const Rule& rule = rule::any) {
+  void optional_derived_field(const std::string& name, Make, const Letters& letters, const Unit& = {}) {
     std::invoke_result_t<Make> unused;
-    if (verifies() && has(name)) field(name, unused, letters, {}, rule);
+    if (verifies() && has(name)) field(name, unused, letters);
   }
   template <class Derived>
   void optional_field(const std::string& name, Eigen::PlainObjectBase<Derived>& values, const Letters& letters,

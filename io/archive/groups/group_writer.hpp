@@ -62,11 +62,6 @@ class GroupWriter {
   void attribute(const std::string& name, const T& value, const Rule& = rule::any) {
     if (complete()) write_attribute(name, to_stored(value));
   }
-  /// Writes a member that older archives lack.
-  template <class T>
-  void optional_attribute(const std::string& name, const T& value, const Rule& = rule::any) {
-    attribute(name, value);
-  }
   /// Writes a value unless it equals the default.
   template <class T>
   void attribute_unless(const T& absent, const std::string& name, const T& value, const Rule& = rule::any) {
@@ -118,7 +113,7 @@ class GroupWriter {
   /// Writes an array whose columns are computed during writing. `values` has windows(), components() and block(first,
   /// count).
   template <class Source>
-  void through_rows(const std::string& name, const Source& values, const Letters& letters, const Rule& = rule::any) {
+  void through_rows(const std::string& name, const Source& values, const Letters& letters) {
     constexpr Eigen::Index rows_at_once = 16384;
     const hdf5::Shape shape{static_cast<hsize_t>(values.windows()), static_cast<hsize_t>(values.components())};
     agree(sizes_, path_ + "/" + name, letters, shape);
@@ -132,13 +127,12 @@ class GroupWriter {
   /// Writes an array that is computed from other arrays. It serves users of the file; modebank's readers ignore it.
   template <class Derived>
   void derived_field(const std::string& name, const Eigen::PlainObjectBase<Derived>& values, const Letters& letters,
-                     const Unit& unit = {}, const Rule& = rule::any) {
+                     const Unit& unit = {}) {
     field(name, values, letters, unit);
   }
   /// Writes a derived array that older files lack. `make` computes the array only for writing.
   template <class Make>
-  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {},
-                              const Rule& = rule::any) {
+  void optional_derived_field(const std::string& name, Make make, const Letters& letters, const Unit& unit = {}) {
     optional_field(name, make(), letters, unit);
   }
   /// Writes an array unless it is empty.

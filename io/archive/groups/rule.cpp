@@ -45,7 +45,7 @@ std::string place(const RowRange& rows, std::size_t i) {
 /// The rule, with the letter's extent as the bound for positions.
 Rule bound(Rule rule, const Sizes& sizes) {
   if (rule.below.empty()) return rule;
-  if (const auto extent = sizes.find(rule.below)) rule.most = static_cast<double>(*extent) - 1.0 + rule.beyond;
+  if (const auto extent = sizes.find(rule.below)) rule.most = static_cast<double>(*extent) - 1.0;
   return rule;
 }
 
@@ -83,14 +83,13 @@ std::string not_increasing(const RowRange& rows, std::span<const double> values)
   return {};
 }
 
-std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const double> values) {
+std::string broken_sums(const RowRange& rows, std::span<const double> values) {
   constexpr double tolerance = 1e-6;
   const std::size_t row = values_in(rows.shape, 1);
   for (std::size_t begin = 0; row > 0 && begin < values.size(); begin += row) {
     double sum = 0.0;
     for (std::size_t i = begin; i < begin + row; ++i) sum += values[i];
-    const bool above = sum > 1.0 + tolerance, below = sum < 1.0 - tolerance;  // not judged if a value is missing
-    if (above || (below && form == Rule::Form::probabilities))
+    if (std::abs(sum - 1.0) > tolerance)
       return "holds probabilities that sum to " + number_text(sum) + place(rows, begin);
   }
   return {};
@@ -98,28 +97,13 @@ std::string broken_sums(Rule::Form form, const RowRange& rows, std::span<const d
 
 using MatrixOfFile = Eigen::Map<const RowMajor>;
 
-/// Whether a matrix can be a covariance, except for rounding errors and missing entries. Used for computed values that
-/// are only shown.
-bool is_computed_covariance(const MatrixOfFile& matrix) {
-  constexpr double rounding = 1e-6;
-  double largest = 0.0;
-  for (Eigen::Index i = 0; i < matrix.size(); ++i)
-    if (std::isfinite(matrix.data()[i])) largest = std::max(largest, std::abs(matrix.data()[i]));
-  for (Eigen::Index i = 0; i < matrix.rows(); ++i) {
-    if (matrix(i, i) < -rounding * largest) return false;
-    for (Eigen::Index j = 0; j < i; ++j)
-      if (std::abs(matrix(i, j) - matrix(j, i)) > rounding * largest) return false;
-  }
-  return true;
-}
-
-std::string broken_matrices(Rule::Form form, const RowRange& rows, std::span<const double> values) {
+std::string broken_matrices(const RowRange& rows, std::span<const double> values) {
   const std::size_t matrix = values_in(rows.shape, 2);
   const auto side = static_cast<Eigen::Index>(rows.shape.empty() ? 1 : rows.shape.back());
   for (std::size_t begin = 0; matrix > 0 && begin + matrix <= values.size(); begin += matrix) {
     const MatrixOfFile here(values.data() + begin, side, side);
     const bool square = static_cast<std::size_t>(side * side) == matrix;
-    if (!square || !(form == Rule::Form::covariances ? is_covariance(here) : is_computed_covariance(here)))
+    if (!square || !is_covariance(here))
       return "holds a matrix" + place(rows, begin) +
              " that is not a covariance: not symmetric or not positive semidefinite";
   }
@@ -133,11 +117,9 @@ std::string broken_form(Rule::Form form, const RowRange& rows, std::span<const d
     case Rule::Form::increasing:
       return not_increasing(rows, values);
     case Rule::Form::probabilities:
-    case Rule::Form::parts:
-      return broken_sums(form, rows, values);
+      return broken_sums(rows, values);
     case Rule::Form::covariances:
-    case Rule::Form::computed_covariances:
-      return broken_matrices(form, rows, values);
+      return broken_matrices(rows, values);
   }
   return {};
 }

@@ -16,11 +16,9 @@ struct Rule {
   /// Rules that concern all numbers of a member together.
   enum class Form {
     none,
-    increasing,           ///< each value is greater than the previous value
-    probabilities,        ///< each slice along the last extent sums to 1, unless a value is missing
-    parts,                ///< each slice along the last extent sums to at most 1
-    covariances,          ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
-    computed_covariances  ///< the same for computed values: symmetric, with variances >= 0, missing entries allowed
+    increasing,     ///< each value is greater than the previous value
+    probabilities,  ///< each slice along the last extent sums to 1
+    covariances     ///< each slice along the last two extents is a symmetric, positive semidefinite matrix
   };
   double least = -std::numeric_limits<double>::infinity();
   double most = std::numeric_limits<double>::infinity();
@@ -28,7 +26,6 @@ struct Rule {
   bool finite = true;           ///< false: infinite values within the bounds are allowed
   bool may_be_missing = false;  ///< NaN marks an unknown value
   std::string below = {};       ///< a letter: the values are positions below this letter's extent
-  double beyond = 0.0;          ///< values may exceed the last position by this number; 1 for counts
   Form form = Form::none;
   bool index = false;  ///< values are used as positions or sizes, so every reader checks them, not only verification
 };
@@ -36,27 +33,18 @@ struct Rule {
 /// The rules that the layout uses.
 namespace rule {
 
-/// Any value, including NaN and infinities. For computed values that are only shown.
+/// Any value, including NaN and infinities. For computed results.
 inline const Rule any{.finite = false, .may_be_missing = true};
 inline const Rule finite{};
 inline const Rule finite_or_missing{.may_be_missing = true};
 inline const Rule positive{.least = 0.0, .above_least = true};
 inline const Rule not_negative{.least = 0.0};
-inline const Rule not_negative_or_missing{.least = 0.0, .finite = false, .may_be_missing = true};
 inline constexpr double one = 1.0 + 1e-9;  ///< allows for rounding errors
 inline const Rule share{.least = 0.0, .most = one};
-inline const Rule share_or_missing{.least = 0.0, .most = one, .may_be_missing = true};
-/// Infinite values are allowed, because the divisor may be zero.
-inline const Rule at_most_one{.most = one, .finite = false, .may_be_missing = true};
 inline const Rule at_least_one{.least = 1.0, .index = true};
 inline const Rule increasing{.form = Rule::Form::increasing};
 inline const Rule probabilities{.least = 0.0, .most = one, .form = Rule::Form::probabilities};
-inline const Rule probabilities_or_missing{
-    .least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::probabilities};
-inline const Rule parts_or_missing{.least = 0.0, .most = one, .may_be_missing = true, .form = Rule::Form::parts};
 inline const Rule covariances{.form = Rule::Form::covariances};
-inline const Rule computed_covariances{
-    .finite = false, .may_be_missing = true, .form = Rule::Form::computed_covariances};
 
 /// Numbers of lags and channels. The limit is far above any real number, but products of such sizes cannot overflow.
 inline const Rule lags{.least = 1.0, .most = 1000.0, .index = true};
@@ -68,8 +56,6 @@ inline Rule between(double least, double most) { return {.least = least, .most =
 inline Rule position(std::string letter) { return {.least = 0.0, .below = std::move(letter), .index = true}; }
 /// Positions below the letter's extent, or -1 for no position.
 inline Rule position_or_none(std::string letter) { return {.least = -1.0, .below = std::move(letter), .index = true}; }
-/// A number of the letter's items, from 0 to the letter's extent.
-inline Rule count_of(std::string letter) { return {.least = 0.0, .below = std::move(letter), .beyond = 1.0}; }
 
 }  // namespace rule
 

@@ -48,16 +48,14 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
   SelectionOptions options;
   options.components.resize(system.modes.size() + 3);
   std::iota(options.components.begin(), options.components.end(), Index{1});
-  options.criterion = recovery.criterion;
   options.em.restarts = 2;
   options.em.noise_component = recovery.noise_component;
   const FeatureCloud cloud =
       make_features(fits, FeatureSet::parameters_and_noise, WindowChoice::automatic, recording.states,
                     WindowsOverSwitch::leave_out, recovery.error_aware ? WindowErrors::include : WindowErrors::ignore);
   const MixtureResult result = select_mixture(fits, cloud, options, static_cast<std::uint64_t>(seed));
-  const Index naive = best_candidate(result.candidates, Criterion::bic_naive);
-  return {static_cast<Index>(system.modes.size()), result.mixture.components(),
-          result.candidates[static_cast<std::size_t>(naive)].components,
+  const auto naive = std::ranges::min_element(result.candidates, {}, &Candidate::bic_naive);
+  return {static_cast<Index>(system.modes.size()), result.mixture.components(), naive->components,
           static_cast<double>((result.labels.array() >= 0).count()) / static_cast<double>(fits.count())};
 }
 

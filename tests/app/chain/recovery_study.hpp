@@ -18,7 +18,6 @@ struct RecoveryCase {
   Index hold_samples = 1;      ///< number of samples for which each input is held
   double dwell_windows = 0.0;  ///< mean stay in a mode, in units of the window length; 0 if each run stays in one mode
   Index step = 1;
-  Criterion criterion = Criterion::bic;
   bool noise_component = false;
   bool error_aware = false;
 };
@@ -36,7 +35,7 @@ Simulated simulate_recording(const SimulationOptions& options, int seed);
 /// Choices of K by different criteria for one seed. Candidates are 1 to the true K + 3.
 struct RecoveredSize {
   Index truth = 0;
-  Index chosen = 0;        ///< choice by the criterion of the case
+  Index chosen = 0;        ///< choice by BIC
   Index naive = 0;         ///< choice by BIC for independent windows
   double clustered = 0.0;  ///< share of the windows that are clustered
 };

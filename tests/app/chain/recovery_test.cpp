@@ -184,7 +184,7 @@ TEST(Recovery, SwitchesInsideRuns) {
              one_more, more, switching_seeds);
 }
 
-/// Requires that `share` of a few seeds are right. measure_recovery runs all 50 seeds of docs/results/mixture.md.
+/// Requires that `share` of a few seeds are right. measure_recovery runs all 50 seeds of docs/results/simulated.md.
 void expect_recovery(const RecoveryCase& recovery, int few_seeds, double share) {
   const std::vector<RecoveredSize> sizes = recover_sizes(recovery, few_seeds);
   fmt::print("{}: {} of {}, naive BIC {}\n", recovery.name, right(sizes, &RecoveredSize::chosen), few_seeds,

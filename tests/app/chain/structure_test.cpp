@@ -1,4 +1,6 @@
-// window.model = auto in the program: its result, archive and texts, and the keys that keep their values.
+// window.model = auto and window.intercept in the program: its result, archive and texts, and the keys that keep their
+// values.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -92,6 +94,60 @@ TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
   EXPECT_THAT(run_automatic({"--window.prior", "1, 2"}).err, HasSubstr("give one value for all"));
   EXPECT_THAT(run({"--window.model", "varx", "--window.state_lags", "automatic"}).err, HasSubstr("1 to 100 or auto"));
   EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
+}
+
+/// One state that switches between two motions, logged about other zeros of state and input.
+std::string run_about(double of_state, double of_input, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> noise(0.0, 0.03);
+  std::string text = "time,x,u\n";
+  double x = 0.0, u = 0.0;
+  for (int k = 0; k < 240; ++k) {
+    if (k % 12 == 0) u = static_cast<double>(generator() % 4);
+    text += fmt::format("{:.1f},{:.6f},{:.2f}\n", 0.1 * k, x + of_state, u + of_input);
+    x += (k / 60 % 2 == 0 ? 0.06 - 0.1 * x + 0.1 * u : -0.09 - 0.4 * x + 0.8 * u) + noise(generator);
+  }
+  return text;
+}
+
+/// Motions, noises and scores of all filters, and the clusters of windows; or the standard errors and R, which is 1e-8.
+std::vector<Eigen::MatrixXd> numbers_of(const Archive& archive, bool errors) {
+  std::vector<Eigen::MatrixXd> all;
+  if (!errors) all.push_back(archive.mixture->mixture.means);
+  for (const SummaryRow& row : archive.summary) {
+    if (!errors) all.emplace_back(Eigen::MatrixXd::Constant(1, 1, row.log_score));
+    const std::optional<Bank> bank = archive.bank_of(row.filter);
+    if (!bank) continue;
+    for (const Mode& mode : bank->modes) {
+      if (!errors) all.insert(all.end(), {mode.model.A, mode.model.B, mode.Q});
+      if (errors && row.filter != "combined") all.emplace_back(mode.standard_error);
+    }
+    if (errors) all.push_back(bank->R);
+  }
+  return all;
+}
+
+TEST_F(StructureOfRuns, DoNotDependOnWhereZeroLies) {
+  write("test.ini",
+        "[data]\ninputs = run_*.csv\nstate = x\ninput = u\n[window]\nintercept = true\nstate_lags = 1\n"
+        "input_lags = 1\ninput_delay = 1\n[mixture]\ncomponents = 1..3\n");
+  const auto learned = [&](double of_state, double of_input) {
+    for (unsigned r = 0; r < 4; ++r) write(fmt::format("run_{:02}.csv", r), run_about(of_state, of_input, r + 1));
+    const ProgramResult result = run();
+    EXPECT_EQ(result.status, 0) << result.err;
+    return read_archive(archive());
+  };
+  const Archive about_zero = learned(0.0, 0.0);
+  for (const auto& [of_state, of_input] : {std::pair{9999.0, 0.0}, {101325.0, 0.0}, {0.0, 9999.0}}) {
+    const Archive about_other = learned(of_state, of_input);
+    for (const bool errors : {false, true}) {
+      const auto expected = numbers_of(about_zero, errors), actual = numbers_of(about_other, errors);
+      ASSERT_EQ(actual.size(), expected.size());
+      for (std::size_t i = 0; i < actual.size(); ++i)
+        EXPECT_LE((actual[i] - expected[i]).norm(), (errors ? 1e-5 : 1e-6) * expected[i].norm())
+            << of_state << ' ' << of_input << ' ' << errors << ' ' << i;
+    }
+  }
 }
 
 /// window.model on the command line replaces the model of the file together with the file's lags.

@@ -159,8 +159,8 @@ TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {
     const std::string said = std::string("run_00.csv: run \"00\": column ") + (column == 1 ? "wz" : "left") +
                              " has no value in any of its 80 samples";
     for (const char* missing : {"gap", "predict"}) {
-      const ProgramResult result = modebank({"identify", config(), "--archive.output", archive(), "--force",
-                                             "--data.missing", missing, "--data.train", "00, 01"});
+      const ProgramResult result = modebank({"run", config(), "--until", "windows", "--archive.output", archive(),
+                                             "--force", "--data.missing", missing, "--data.train", "00, 01"});
       EXPECT_THAT(result.err, HasSubstr(said)) << missing;
       EXPECT_EQ(result.status, column == 1 && std::string(missing) == "predict" ? 0 : 1) << missing << result.err;
     }

@@ -56,19 +56,15 @@ TEST_F(Demo, IsTheCommandsThatItNames) {
   words.insert(words.end(), small.begin(), small.end());
   const ProgramResult by_hand = modebank(words);
   ASSERT_EQ(by_hand.status, 0) << by_hand.err;
-  const std::size_t next = by_hand.out.find("next   "),
-                    use = by_hand.out.find("use   ");  // the next step is not compared, because it may contain the
-                                                       // archive's name
-  EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(0, next)));
-  EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(use, by_hand.out.find("archive   ") - use)));
+  EXPECT_THAT(shown.out, HasSubstr(by_hand.out.substr(0, by_hand.out.find("archive   "))));
 }
 
 TEST_F(Demo, ConfigurationsRunAsTheyStand) {
   ASSERT_EQ(small_demo().status, 0);
   for (const auto& [from, path] : {std::pair{file("").string(), "demo/"}, std::pair{folder(), ""}}) {
-    const ProgramResult again = run_program(
-        {"/bin/sh", "-c",
-         "cd '" + from + "' && '" + MODEBANK_PROGRAM + "' identify " + path + "demo.ini --archive.output again.h5"});
+    const ProgramResult again = run_program({"/bin/sh", "-c",
+                                             "cd '" + from + "' && '" + MODEBANK_PROGRAM + "' run " + path +
+                                                 "demo.ini --until windows --archive.output again.h5"});
     EXPECT_EQ(again.status, 0) << again.err;
   }
 }

@@ -6,11 +6,9 @@
 #include <random>
 #include <sstream>
 
-#include "app/cli/help_text.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
-#include "tests/app/labels_of.hpp"
 
 namespace modebank::test {
 namespace {
@@ -106,10 +104,8 @@ TEST_F(RunLog, LateInputsOfAnotherInstrumentAreFoundAndNamed) {
   EXPECT_NEAR(archive.lag->lag.mean, -0.5, 0.1);  // the tolerance is a period of the inputs
   EXPECT_THAT(read_file(ini()), ::testing::ContainsRegex("\nlag_s = auto +# inputs act -0\\.[45]"));
   EXPECT_THAT(result.out, HasSubstr("robot     the stamps of left, right are 0."));
-  std::set<std::string> labels = labels_of(result.out);
-  EXPECT_THAT(labels, ::testing::IsSupersetOf({"log", "time", "state", "inputs", "runs", "robot", "files"}));
-  for (const std::string& label : labels)
-    EXPECT_THAT(app::help_on(label), HasSubstr(label + " (a line of the screen): "));
+  for (const char* label : {"time ", "state ", "inputs ", "runs ", "robot ", "files "})
+    EXPECT_THAT(result.out, HasSubstr(std::string("\n") + label));
   EXPECT_THAT(read_file(ini()), HasSubstr("are taken for two instruments of one run: they have 149."));
 }
 

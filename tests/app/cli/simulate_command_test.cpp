@@ -17,7 +17,8 @@ TEST_F(SimulateCommand, ShippedSimulationIsReadByItsOwnConfiguration) {
   const ProgramResult simulated =
       modebank({"simulate", config, "--simulate.output", folder, "--simulate.runs", "4", "--simulate.samples", "60"});
   ASSERT_EQ(simulated.status, 0) << simulated.err;
-  const ProgramResult read = modebank({"identify", config, "--data.root", folder, "--archive.output", archive()});
+  const ProgramResult read =
+      modebank({"run", config, "--until", "windows", "--data.root", folder, "--archive.output", archive()});
   ASSERT_EQ(read.status, 0) << read.err;
   EXPECT_EQ(read_archive(archive()).recording->runs.size(), 4u);
 }

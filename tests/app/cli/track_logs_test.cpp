@@ -1,5 +1,5 @@
 // The live filter on logs in all forms that `run` reads: stamps, dialects, derived channels, rates and lags. Expected
-// values come from `evaluate` on the same run, or from the same numbers in the simplest form.
+// values come from `run` on the same run, or from the same numbers in the simplest form.
 #include <fmt/format.h>
 #include <gmock/gmock.h>
 
@@ -67,7 +67,7 @@ class TrackLogs : public Track {
     while (std::getline(text, line)) rows.push_back(numbers(line));
     return rows;
   }
-  /// The estimates for run 01 must equal those of `evaluate`. The times of `track` are later by `origin_s`.
+  /// The estimates for run 01 must equal those of `run`. The times of `track` are later by `origin_s`.
   void expect_evaluated(const ProgramResult& result, double origin_s = 0.0, double within = 1e-12) const {
     const Archive stored = read_archive(archive());
     const Trajectory& run = stored.recording->runs[1];
@@ -177,18 +177,6 @@ TEST_F(TrackLogs, BringsAFasterLogToTheArchivesRate) {
     const ProgramResult result = track("run_01.csv");
     expect_evaluated(result, 0.0, 1e-9);
     EXPECT_EQ(track("", "--data.inputs run_01.csv").out, result.out);
-    // Sends the first half to one filter, and the second half to a filter that continues from a checkpoint.
-    const std::vector<std::string> samples = lines("run_01.csv");
-    std::string first = samples[0] + "\n", second = first;
-    for (std::size_t k = 1; k < samples.size(); ++k)
-      for (std::string* half : {&first, &second})
-        if ((half == &first) == (k <= 200) || (half == &second && k > 150)) *half += samples[k] + "\n";
-    write("first.csv", first);
-    write("second.csv", second);
-    const auto head = table(track("first.csv", "--track.checkpoint half.h5").out);
-    const auto tail = table(track("second.csv", "--track.resume half.h5").out), whole = table(result.out);
-    ASSERT_EQ(head.size() + tail.size(), whole.size());
-    for (std::size_t i = 0; i < tail.size(); ++i) EXPECT_NEAR(tail[i][5], whole[head.size() + i][5], 1e-12) << i;
   }
 }
 
@@ -220,28 +208,6 @@ TEST_F(TrackLogs, AveragesWhatWasAveragedForTheArchive) {
   const ProgramResult live = track("held.csv"), read = track("", "--data.inputs held.csv");
   EXPECT_EQ(live.out, read.out) << live.err;
   EXPECT_THAT(read.err, HasSubstr("wz, left are the mean over the step"));
-}
-
-/// The last estimate is 0.5 s old. The forecast has five filter steps without a measurement and with held inputs.
-TEST_F(TrackLogs, ForecastsToTheNewestSample) {
-  ASSERT_EQ(run({"--data.lag_s", "-0.5"}).status, 0);
-  const auto plain = table(track("run_01.csv").out), said = table(track("run_01.csv", "--track.forecast true").out);
-  ASSERT_EQ(said.size(), plain.size());
-  const std::size_t now = said[0].size() - 4;
-  EXPECT_NEAR(said.back()[now], said.back()[0] + 0.5, 1e-9);
-  for (std::size_t k = 0; k < plain.size(); ++k)
-    for (std::size_t i = 0; i < plain[k].size(); ++i)
-      EXPECT_TRUE(plain[k][i] == said[k][i] || std::isnan(plain[k][i])) << "the forecast leaves the filter as it was";
-  // This test computes the same forecast: the aligned run, its last state and input, then a sample without a
-  // measurement.
-  const Trajectory run = read_archive(archive()).recording->runs[1];
-  std::string text = "time,wz,left,right\n";
-  for (Index k = 0; k < run.samples(); ++k)
-    text += fmt::format("{},{},{},{}\n", run.time_s(k), run.state(0, k), run.input(0, k), run.input(1, k));
-  text += fmt::format("{},,,\n", run.time_s(run.samples() - 1) + 0.5);
-  write("aligned.csv", text);
-  const auto by_hand = table(track("aligned.csv", "--data.lag_s 0").out);
-  for (const std::size_t i : {0u, 1u, 2u}) EXPECT_NEAR(said.back()[now + 1 + i], by_hand.back()[2 + i], 1e-12);
 }
 
 TEST_F(TrackLogs, ReadsFilesAsRunDoes) {

@@ -1,5 +1,6 @@
 #include "app/config/config_file.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -8,6 +9,7 @@
 
 #include "app/config/option_table.hpp"
 #include "modebank/base/error.hpp"
+#include "tests/io/import/expect_error.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::app {
@@ -152,6 +154,17 @@ TEST_F(ConfigFile, AllFaultsAreReportedAtOnce) {
         "\n  " + place + "7: window.loss is already set in line 6", std::string("\n  --bank.stay: bank.stay = '2' ")})
     EXPECT_NE(all.find(part), std::string::npos) << part << " not in: " << all;
   EXPECT_EQ(faults("[window]\nlength = long\n", {}).find(place + "2: window.length"), 0u) << "a single one as it is";
+}
+
+TEST_F(ConfigFile, DelaysAreOneOrOnePerInput) {
+  const auto checked = [&](const std::string& delays) {
+    validate(load("[data]\ninputs = a.csv\nstate = y\ninput = a, b\n[window]\nmodel = varx\ninput_delay = " + delays +
+                  "\n"));
+  };
+  for (const std::string delays : {"4", "1, 4"}) EXPECT_NO_THROW(checked(delays));
+  EXPECT_THAT(test::message_of<ConfigurationError>([&] { checked("1, 4, 2"); }),
+              ::testing::HasSubstr("window.input_delay takes one number, or one for each of the 2 inputs"));
+  EXPECT_THAT(test::message_of<ConfigurationError>([&] { checked("1, -4"); }), ::testing::HasSubstr("out of range"));
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <nlohmann/json.hpp>
 
 #include "io/archive/archive.hpp"
-#include "io/archive/inspect.hpp"
 #include "tests/app/cli_fixture.hpp"
 
 namespace modebank::test {
@@ -54,18 +53,10 @@ TEST_F(Export, DoubtfulNumbersAreRemarkedInEveryForm) {
   EXPECT_EQ(page.at("modes").at(0).at("parameters").at(2).at("remark"), "not identifiable");
   EXPECT_FALSE(page.at("modes").at(0).at("parameters").at(0).contains("remark"));
   ASSERT_EQ(exported("c", {"-o", file("bank.c").string()}).status, 0);
-  ASSERT_EQ(exported("casadi", {"-o", file("bank.py").string()}).status, 0);
-  ASSERT_EQ(exported("mat", {"-o", file("bank.mat").string()}).status, 0);
-  ASSERT_EQ(exported("ros2", {"-o", file("ros").string()}).status, 0);
-  std::vector<std::string> texts{page.at("remarks").dump(), text_of(file("bank.c")), text_of(file("bank.py")),
-                                 text_of(file("bank.mat"))};
-  for (const auto& entry : std::filesystem::directory_iterator(file("ros"))) texts.push_back(text_of(entry.path()));
-  for (std::string& text : texts) {
-    std::erase(text, '\0');  // MATLAB's characters have 16 bits
+  for (const std::string& text : {page.at("remarks").dump(), text_of(file("bank.c"))})
     EXPECT_THAT(
         text, testing::AllOf(HasSubstr("standard errors exceed the values"),
                              HasSubstr("not identifiable from the training runs"), HasSubstr("is at its lower bound")));
-  }
 }
 
 TEST_F(Export, ModesHaveTheirNames) {
@@ -82,7 +73,7 @@ TEST_F(Export, ModesHaveTheirNames) {
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
 }
 
-/// Every mode belongs to the family that it names. Families are ordered by use. Both forms have the same families.
+/// Every mode belongs to the family that it names. Families are ordered by use.
 TEST_F(Export, ModesHaveTheirFamily) {
   ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
   judge(Calibration::calibrated);
@@ -90,92 +81,35 @@ TEST_F(Export, ModesHaveTheirFamily) {
   stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "ice");
   stored.mode_names.back() = "grip";
   write_archive(archive(), stored);
-  const json page = json::parse(exported("json").out), regimes = json::parse(exported("regimes").out);
+  const json page = json::parse(exported("json").out);
   const json& families = page.at("families");
   ASSERT_EQ(families.size(), 2u);
-  EXPECT_EQ(regimes.at("families"), families);
   EXPECT_GE(families.at(0).at("used"), families.at(1).at("used"));
   double used = 0.0;
   for (const json& family : families) {
     used += family.at("used").get<double>();
-    for (const json& mode : family.at("modes")) {
+    for (const json& mode : family.at("modes"))
       EXPECT_EQ(page.at("modes").at(mode.get<std::size_t>()).at("family"), family.at("family"));
-      EXPECT_EQ(regimes.at("regimes").at(mode.get<std::size_t>()).at("family"), family.at("family"));
-    }
   }
   EXPECT_NEAR(used, 1.0, 1e-9);
-}
-
-TEST_F(Export, CsvIsAnyTableAsItStands) {
-  const ProgramResult result = exported("csv", {"--table", "/evaluation/summary"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  std::istringstream lines(result.out);
-  std::string header, line;
-  std::getline(lines, header);
-  EXPECT_EQ(header.rfind("filter,role,run,samples,log_score,rmse[0],", 0), 0u) << header;
-  const json rows = inspect(archive(), "/evaluation/summary").at("value");
-  for (const json& row : rows) {
-    ASSERT_TRUE(std::getline(lines, line));
-    EXPECT_EQ(line.rfind(row.at("filter").get<std::string>() + "," + row.at("role").get<std::string>(), 0), 0u) << line;
-  }
-  EXPECT_FALSE(std::getline(lines, line));
-  EXPECT_EQ(exported("csv").status, 2);
-  const ProgramResult group = exported("csv", {"--table", "/evaluation"});
-  EXPECT_EQ(group.status, 2);
-  EXPECT_THAT(group.err, HasSubstr("its members are: bank"));
-}
-
-TEST_F(Export, CsvOfARunHasARowPerSample) {
-  const Archive stored = read_archive(archive());
-  const Trajectory& run = stored.recording->runs.at(1);
-  const auto lines_of = [&](const std::vector<std::string>& options) {
-    const ProgramResult result = exported("csv", options);
-    EXPECT_EQ(result.status, 0) << result.err;
-    std::vector<std::string> lines;
-    std::istringstream stream(result.out);
-    for (std::string line; std::getline(stream, line);) lines.push_back(line);
-    return lines;
-  };
-  const std::vector<std::string> data = lines_of({"--run", run.run});
-  ASSERT_EQ(std::ssize(data), run.samples() + 1);
-  EXPECT_EQ(data.front(), "time,input[0],input[1],state[0]");
-  std::istringstream first(data[1]);
-  std::string cell;
-  for (const double expected : {run.time_s(0), run.input(0, 0), run.input(1, 0), run.state(0, 0)}) {
-    std::getline(first, cell, ',');
-    EXPECT_EQ(std::stod(cell), expected);
-  }
-  EXPECT_EQ(std::ssize(lines_of({"--run", run.run, "--table", "/evaluation/bank"})), run.samples() + 1);
-  EXPECT_EQ(lines_of({"--run", run.run, "--table", "/evaluation/bank/nis"}).at(0), "nis");
-  for (const std::string& line : lines_of({"--run", run.run, "--table", "/evaluation/summary"}))
-    EXPECT_TRUE(line.starts_with("filter,") || line.find("," + run.run + ",") != std::string::npos) << line;
-  EXPECT_EQ(exported("csv", {"--run", "none"}).status, 2);
-  EXPECT_EQ(exported("csv", {"--run", run.run, "--table", "/bank/A"}).status, 2);
-  EXPECT_EQ(exported("json", {"--run", run.run}).status, 2);
 }
 
 TEST_F(Export, WritesFilesWholeOrNotAtAll) {
   judge(Calibration::calibrated);
   ASSERT_EQ(exported("c", {"-o", file("robot.c").string()}).status, 0);
   EXPECT_THAT(text_of(file("robot.h")), HasSubstr("typedef double robot_real;"));
-  ASSERT_EQ(exported("mat", {"-o", file("robot.mat").string()}).status, 0);
-  EXPECT_EQ(text_of(file("robot.mat")).rfind("MATLAB 5.0 MAT-file", 0), 0u);
-  ASSERT_EQ(exported("casadi", {"-o", file("robot.py").string()}).status, 0);
-  EXPECT_EQ(text_of(file("robot.py")).rfind("# Calibration: calibrated", 0), 0u);
-  ASSERT_EQ(exported("ros2", {"-o", file("ros2").string(), "--wheel_separation_m", "0.5"}).status, 0);
-  EXPECT_EQ(text_of(file("ros2") / "mode_0.yaml").rfind("# Calibration: calibrated", 0), 0u);
-  EXPECT_THAT(left_behind(), ::testing::ElementsAre("out.h5", "robot.c", "robot.h", "robot.mat", "robot.py", "ros2"));
+  EXPECT_THAT(left_behind(), ::testing::ElementsAre("out.h5", "robot.c", "robot.h"));
   EXPECT_EQ(exported("json", {"-o", file("none/robot.json").string()}).status, 2);
   EXPECT_THAT(exported("json", {"-o", archive()}).err, HasSubstr("is read by this command"));
   EXPECT_EQ(exported("c", {"-o", file("robot.txt").string()}).status, 2);
   EXPECT_EQ(exported("c", {"-o", file("a b.c").string()}).status, 2);
-  EXPECT_EQ(left_behind().size(), 6u);
+  EXPECT_EQ(left_behind().size(), 3u);
 }
 
 TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
   for (const Calibration verdict : {Calibration::overconfident, Calibration::underconfident}) {
     judge(verdict);
-    for (const std::string form : {"json", "regimes", "mat", "c", "casadi", "ros2"}) {
+    for (const std::string form : {"json", "c"}) {
       const ProgramResult result = exported(form, {"-o", file("refused.c").string()});
       EXPECT_EQ(result.status, 1) << form;
       EXPECT_THAT(result.err, HasSubstr(std::string(name_of(verdict))));
@@ -185,7 +119,6 @@ TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
     const ProgramResult forced = exported("json", {"--force"});
     EXPECT_EQ(forced.status, 0);
     EXPECT_EQ(json::parse(forced.out).at("verdict").at("answer"), name_of(verdict));
-    EXPECT_EQ(exported("csv", {"--table", "/bank/A"}).status, 0);
   }
 }
 

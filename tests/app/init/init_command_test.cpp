@@ -10,40 +10,6 @@ using ::testing::HasSubstr;
 
 class InitCommand : public CliTest {};
 
-/// On a terminal `init` asks questions. With --yes it does not ask.
-TEST_F(InitCommand, AsksOnATerminal) {
-  write("one.csv", csv_run(300, 1));
-  const char* script =
-      "import os, pty, sys\n"
-      "answers, words = sys.argv[1], sys.argv[2:]\n"
-      "pid, terminal = pty.fork()\n"
-      "if pid == 0: os.execv(words[0], words)\n"
-      "if answers: os.write(terminal, answers.encode())\n"
-      "shown = b''\n"
-      "try:\n"
-      "    while chunk := os.read(terminal, 4096): shown += chunk\n"
-      "except OSError: pass\n"
-      "sys.stdout.write(shown.decode())\n"
-      "sys.exit(os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1]))\n";
-  const std::string log = file("one.csv").string(), ini = file("one.ini").string();
-  const auto on_terminal = [&](const std::string& answers, std::vector<std::string> more) {
-    std::vector<std::string> words{"/usr/bin/python3", "-c", script, answers, MODEBANK_PROGRAM, "init", log, "-o", ini,
-                                   "--force"};
-    words.insert(words.end(), more.begin(), more.end());
-    return run_program(words);
-  };
-  const ProgramResult asked = on_terminal("wq\nleft\nwz, right\n", {});
-  ASSERT_EQ(asked.status, 0) << asked.out;
-  EXPECT_THAT(asked.out, HasSubstr("state (measured) [wz]"));
-  EXPECT_THAT(asked.out, HasSubstr("no moving channel has the name wq"));
-  EXPECT_THAT(read_file(ini), HasSubstr("state = left"));
-  EXPECT_THAT(read_file(ini), HasSubstr("input = wz, right"));
-  const ProgramResult quiet = on_terminal("", {"--yes"});
-  ASSERT_EQ(quiet.status, 0) << quiet.out;
-  EXPECT_EQ(quiet.out.find("state (measured)"), std::string::npos);
-  EXPECT_THAT(read_file(ini), HasSubstr("state = wz"));
-}
-
 /// A folder stands for the logs in it. Other files in it are ignored. The configuration has the name of the folder.
 TEST_F(InitCommand, AFolderStandsForTheLogsInIt) {
   const std::filesystem::path drives = file("drives");
@@ -53,7 +19,7 @@ TEST_F(InitCommand, AFolderStandsForTheLogsInIt) {
   write_file(drives / ".hidden.csv", "a,b\n1,2\n");
   const auto init = [&](const std::string& folder) {
     return run_program(
-        {"/bin/sh", "-c", "cd '" + file("").string() + "' && '" MODEBANK_PROGRAM "' init " + folder + " --yes"});
+        {"/bin/sh", "-c", "cd '" + file("").string() + "' && '" MODEBANK_PROGRAM "' init " + folder + ""});
   };
   const ProgramResult made = init("drives");
   ASSERT_EQ(made.status, 0) << made.err;
@@ -72,7 +38,7 @@ TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
   std::filesystem::create_directory(folder);
   write_file(folder / "one.csv", csv_run(300, 1));
   const std::string ini = file("it's $(touch pwned)`touch pwned`.ini").string();
-  const ProgramResult made = modebank({"init", (folder / "one.csv").string(), "-o", ini, "--yes"});
+  const ProgramResult made = modebank({"init", (folder / "one.csv").string(), "-o", ini});
   ASSERT_EQ(made.status, 0) << made.err;
   const std::string text = read_file(ini);
   EXPECT_THAT(text, HasSubstr("state = wz"));
@@ -91,7 +57,7 @@ TEST_F(InitCommand, NamesWithTheMarkOfACommentAreQuoted) {
   const std::string rows = csv_run(300, 1);
   write("hash.csv", "t#1,flow#1,\"valve, #2\",right" + rows.substr(rows.find('\n')));
   const std::string ini = file("hash.ini").string();
-  const ProgramResult made = modebank({"init", file("hash.csv").string(), "-o", ini, "--yes"});
+  const ProgramResult made = modebank({"init", file("hash.csv").string(), "-o", ini});
   ASSERT_EQ(made.status, 0) << made.err;
   const std::string text = read_file(ini);
   EXPECT_THAT(text, HasSubstr("derive = \"flow_1 = 'flow#1'\""));
@@ -106,7 +72,7 @@ TEST_F(InitCommand, NamesWithTheMarkOfACommentAreQuoted) {
 TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   for (const char* name : {"a#b.csv", "a,b.csv", "a*b.csv", " a.csv", "a\nb.csv"}) {
     write(name, csv_run(50, 1));
-    const ProgramResult result = modebank({"init", file(name).string(), "-o", file("x.ini").string(), "--yes"});
+    const ProgramResult result = modebank({"init", file(name).string(), "-o", file("x.ini").string()});
     EXPECT_EQ(result.status, 2) << name;
     EXPECT_THAT(result.err, HasSubstr("no configuration can name it")) << name;
     EXPECT_FALSE(std::filesystem::exists(file("x.ini"))) << name;
@@ -117,13 +83,13 @@ TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
 TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
   const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
   ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
-  const ProgramResult made = modebank({"init", file("drive.bag").string(), "-o", file("drive.ini").string(), "--yes"});
+  const ProgramResult made = modebank({"init", file("drive.bag").string(), "-o", file("drive.ini").string()});
   ASSERT_EQ(made.status, 0) << made.err;
   EXPECT_THAT(made.out, HasSubstr("/cmd (std_msgs/Float64): 400 rows, 10 Hz"));
   EXPECT_THAT(made.out, HasSubstr("/speed (std_msgs/Float64): 400 rows, 10 Hz"));
   EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("state = /speed.data"));
   EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("input = /cmd.data"));
-  const ProgramResult frames = modebank({"init", file("tf.bag").string(), "-o", file("tf.ini").string(), "--yes"});
+  const ProgramResult frames = modebank({"init", file("tf.bag").string(), "-o", file("tf.ini").string()});
   EXPECT_NE(frames.status, 0);
   EXPECT_THAT(frames.out, HasSubstr("left out: topic /tf: its messages alternate between 2 frames (base, arm); "
                                     "set data.run = /tf.transforms[0].child_frame_id for one run per frame"));

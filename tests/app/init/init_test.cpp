@@ -11,7 +11,6 @@
 
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
-#include "app/init/confirm.hpp"
 #include "app/init/mounting.hpp"
 #include "app/init/proposal.hpp"
 #include "app/init/survey_set.hpp"
@@ -82,7 +81,7 @@ class Init : public ::testing::Test {
 
   TemporaryFolder folder;
   Config config;
-  std::string listing, asked;
+  std::string listing;
 };
 
 /// A gyro that lies on its side, for 60 s at 50 Hz. Its y axis points up or down.
@@ -350,33 +349,6 @@ TEST_F(Init, SaysWhatIsInDoubtOfDates) {
     write_file(folder.path() / "dates.csv", text);
     EXPECT_THAT(write({path("dates.csv")}), HasSubstr(said)) << date;
   }
-}
-
-TEST_F(Init, TakesAnswersInPlaceOfItsGuesses) {
-  write_file(folder.path() / "log.csv", driven(",p"));
-  const std::vector<SurveyedFile> surveyed{survey_file(folder.path() / "log.csv")};
-  const auto names = [&](const std::vector<ChannelPlace>& places) {
-    std::vector<std::string> result;
-    for (const ChannelPlace& place : places) result.push_back(surveyed[0].tables[0].channels[place.channel].name);
-    return result;
-  };
-  const auto answered = [&](const std::string& lines) {
-    Guess guess = guess_roles(surveyed);
-    std::istringstream answers(lines);
-    std::ostringstream questions;
-    confirm_roles(surveyed, guess, answers, questions);
-    asked = questions.str();
-    return std::pair{names(guess.states), names(guess.inputs)};
-  };
-  const auto kept = answered("\n\n");
-  EXPECT_THAT(kept.first, ElementsAre("wz"));
-  EXPECT_THAT(kept.second, ElementsAre("cmd"));
-  EXPECT_THAT(asked, HasSubstr("state (measured) [wz]"));
-  EXPECT_EQ(answered(""), kept) << "nobody answers";
-  const auto others = answered("wy\np , wz\nnone\n");
-  EXPECT_THAT(asked, HasSubstr("no moving channel has the name wy, did you mean wz?"));
-  EXPECT_THAT(others.first, ElementsAre("p", "wz"));
-  EXPECT_TRUE(others.second.empty());
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <regex>
 
 #include "app/config/config_file.hpp"
-#include "app/report/page/folded_transition.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_page.hpp"
@@ -236,82 +235,21 @@ TEST_F(Report, NamesModesAndComparesThemWithLabels) {
   }
 }
 
-TEST_F(Report, BeginsWithWhatTheFirstScreenSaysAndAPicture) {
+TEST_F(Report, BeginsWithWhatTheFirstScreenSays) {
   ASSERT_EQ(run().status, 0);
-  Archive stored = read_archive(archive());
-  RunLabels labels{{"grip", "ice"}, {}};
-  for (const Trajectory& one : stored.recording->runs) {
-    labels.of_runs.push_back(Eigen::VectorXi::Zero(one.samples()));
-    labels.of_runs.back().tail(one.samples() / 2).setOnes();
-  }
-  stored.labels = labels;
+  const Archive stored = read_archive(archive());
   const json verdict = app::report::verdict_section(stored);
   const app::FirstScreen screen = app::make_first_screen(stored, app::resolved_values(stored.config));
-  EXPECT_EQ(verdict["next"], screen.next);
   ASSERT_FALSE(verdict["cards"].empty());
   EXPECT_EQ(verdict["cards"][0]["key"], "coverage");
   EXPECT_EQ(verdict["cards"][0]["big"]["v"], screen.coverage);
   ASSERT_EQ(verdict["modes"]["rows"].size(), screen.modes.rows.size());
   EXPECT_EQ(verdict["modes"]["rows"][0]["modes"], screen.modes.rows[0].modes);
-
-  const json& picture = verdict["picture"];
-  EXPECT_EQ(picture["labels"], (json{"grip", "ice"}));
-  const RunEvaluation* evaluation = nullptr;
-  const Trajectory* shown = nullptr;
-  for (std::size_t i = 0; i < stored.recording->runs.size() && !shown; ++i)
-    if (stored.recording->runs[i].role == screen.role) {
-      shown = &stored.recording->runs[i];
-      for (const FilterEvaluation& filter : stored.evaluations)
-        if (filter.filter == "bank") evaluation = &filter.runs[i];
-    }
-  ASSERT_TRUE(shown && evaluation);
-  const json& first = picture["runs"][0];
-  EXPECT_EQ(first["name"], shown->run);
-  const Index N = shown->samples(), drawn = std::ssize(first["low"]);
-  ASSERT_GT(drawn, 10);
-  const Index bucket = (N + drawn - 1) / drawn;
-  EXPECT_EQ(first["mode"].size(), first["low"].size());
-  EXPECT_EQ(first["label"].front(), 0);
-  EXPECT_EQ(first["label"].back(), 1);
-  const double low = picture["range"][0], high = picture["range"][1],
-               step = (high - low) / picture["steps"].get<double>();
-  for (Index i = 0; i < drawn; ++i) {
-    const double least = shown->state.row(0).segment(i * bucket, std::min(bucket, N - i * bucket)).minCoeff();
-    EXPECT_NEAR(low + step * first["low"][static_cast<std::size_t>(i)].get<double>(), least, step) << i;
-  }
-  if (bucket == 1) {
-    Index mode = -1;
-    evaluation->mode_probability.col(N - 1).maxCoeff(&mode);
-    EXPECT_EQ(first["mode"].back(), mode);
-  }
-}
-
-/// The first of three modes is listed, and the other two are merged. Transitions out of the merged modes are weighted
-/// by their use.
-TEST(ReportFolding, TransitionsOfTheOthersAreTheirMean) {
-  const Eigen::MatrixXd T{{0.9, 0.06, 0.04}, {0.2, 0.7, 0.1}, {0.5, 0.1, 0.4}};
-  using Group = std::vector<Index>;
-  using Groups = std::vector<Group>;
-  const Eigen::MatrixXd folded = folded_transition(T, Groups{Group{0}}, Eigen::Vector3d(0.7, 0.2, 0.1));
-  ASSERT_EQ(folded.rows(), 2);
-  EXPECT_NEAR(folded(0, 0), 0.9, 1e-15);
-  EXPECT_NEAR(folded(0, 1), 0.1, 1e-15);
-  EXPECT_NEAR(folded(1, 0), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
-  EXPECT_NEAR(folded.row(1).sum(), 1.0, 1e-15);
-  const Eigen::MatrixXd ordered = folded_transition(T, Groups{Group{2}, Group{0}, Group{1}}, Eigen::Vector3d::Zero());
-  EXPECT_EQ(ordered(0, 1), 0.5);
-  EXPECT_EQ(ordered(1, 0), 0.04);
-  EXPECT_NEAR(folded_transition(T, Groups{Group{0}}, Eigen::Vector3d::Zero())(1, 0), 0.35, 1e-15)
-      << "never used: plain means";
-  const Eigen::MatrixXd joined = folded_transition(T, Groups{Group{1, 2}, Group{0}}, Eigen::Vector3d(0.7, 0.2, 0.1));
-  ASSERT_EQ(joined.rows(), 2) << "no mode is left over";
-  EXPECT_NEAR(joined(0, 1), (0.2 * 0.2 + 0.1 * 0.5) / 0.3, 1e-15);
-  EXPECT_NEAR(joined(1, 0), 0.1, 1e-15);
 }
 
 TEST_F(Report, EarlierStagesAlone) {
-  for (const char* stage : {"identify", "cluster"}) {
-    ASSERT_EQ(modebank({stage, config(), "--archive.output", archive()}).status, 0) << stage;
+  for (const char* stage : {"windows", "mixture"}) {
+    ASSERT_EQ(modebank({"run", config(), "--until", stage, "--archive.output", archive()}).status, 0) << stage;
     ASSERT_EQ(modebank({"report", archive(), "-o", page()}).status, 0) << stage;
     EXPECT_TRUE(data_of_page()["filter"].is_null());
     EXPECT_TRUE(data_of_page()["bank"].is_null());

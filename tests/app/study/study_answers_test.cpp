@@ -6,7 +6,6 @@
 
 #include "app/study/answers/answers.hpp"
 #include "app/study/answers/answers_text.hpp"
-#include "app/study/answers/value_groups.hpp"
 
 namespace modebank::app {
 namespace {
@@ -105,16 +104,6 @@ TEST(StudyAnswers, MeanNisIsNearestToTheNumberOfStates) {
   EXPECT_EQ(answers.best.back().row, 1U);
 }
 
-TEST(StudyAnswers, ParetoSetHasOnlyWhatNothingBeats) {
-  StudyTable table{{"k"}, {"modes", "bank_test_log_score"}, {}};
-  table.rows = {trial({"a"}, {5, 2.0}), trial({"b"}, {2, 1.0}), trial({"c"}, {3, 0.5}),
-                trial({"d"}, {4, 2.0}), trial({"e"}, {2, 0.9}), trial({"f"}, {8, 3.0})};
-  const Answers answers = answer(table);
-  std::vector<std::size_t> rows;
-  for (const ParetoSetting& point : answers.pareto) rows.push_back(point.row);
-  EXPECT_EQ(rows, (std::vector<std::size_t>{1, 3, 5}));
-}
-
 TEST(StudyAnswers, SpreadSeparatesRepeatsFromSettings) {
   const Answers answers = answer(grid());
   const RepeatSpread& spread = answers.spread.front();
@@ -139,37 +128,22 @@ TEST(StudyAnswers, OnlyFinishedTrialsCount) {
   EXPECT_EQ(answers_text(table, nothing), "");
 }
 
-TEST(StudyAnswers, ASampledKeyDoesNotExplainAllByHavingAValuePerTrial) {
+/// The score depends only on the variant. A value per trial would explain all of it.
+TEST(StudyAnswers, ASampledKeyHasNoEffects) {
   StudyTable table{{"window.prior", "filter.variant"}, {"modes", "bank_test_log_score"}, {}};
-  for (int i = 0; i < 20; ++i)  // the score depends only on the variant
+  for (int i = 0; i < 20; ++i)
     for (const int repeat : {0, 1})
       table.rows.push_back(trial({std::to_string(0.01 * (i * 7 % 20 + 1)), i % 2 == 0 ? "imm" : "kf"},
                                  {2.0, i % 2 == 0 ? 1.0 : 0.0}, repeat));
-  EXPECT_EQ(value_groups(table, 0).size(), value_range_count);
-  EXPECT_EQ(value_groups(table, 1).size(), 2u);
-  for (const KeyInfluence& influence : answer(table).influences) {
-    if (influence.key == "filter.variant") {
-      EXPECT_NEAR(influence.share, 1.0, 1e-12);
-    } else {
-      EXPECT_LT(influence.share, 0.3);
-    }
-  }
-  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // only one key varies, so each of its values stays
-                                                              // separate
+  const Answers answers = answer(table);
+  ASSERT_EQ(answers.influences.size(), 1U);
+  EXPECT_EQ(answers.influences[0].key, "filter.variant");
+  EXPECT_NEAR(answers.influences[0].share, 1.0, 1e-12);
+  StudyTable sweep{{"window.prior"}, table.score_names, {}};  // only one key varies
   for (int i = 0; i < 20; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
-  EXPECT_EQ(value_groups(sweep, 0).size(), 20u);
-}
-
-TEST(StudyAnswers, ManyNumbersAreGroupedIntoRanges) {
-  StudyTable table{{"window.prior"}, {"bank_test_log_score"}, {}};
-  for (int i = 0; i < 100; ++i) table.rows.push_back(trial({std::to_string((i * 37) % 100)}, {0.0}));
-  const std::vector<ValueGroup> groups = value_groups(table, 0);
-  ASSERT_EQ(groups.size(), value_range_count);
-  EXPECT_EQ(groups.front().label, "0..19");
-  EXPECT_EQ(groups.back().label, "80..99");
-  for (const ValueGroup& group : groups) EXPECT_EQ(group.rows.size(), 20U);
-  table.rows[0].varied[0] = "word";  // now not all values are numbers
-  EXPECT_EQ(value_groups(table, 0).size(), 100U);
+  EXPECT_EQ(answer(sweep).main_effects.size(), 20U);
+  for (int i = 20; i < 40; ++i) sweep.rows.push_back(trial({std::to_string(i)}, {2.0, 1.0 * i}));
+  EXPECT_EQ(answer(sweep).main_effects.size(), 0U);
 }
 
 }  // namespace

@@ -110,25 +110,6 @@ TEST(StudySpace, KeysTogetherGoInStep) {
   EXPECT_THROW(lay_out(config), ConfigurationError);
 }
 
-TEST(StudySpace, ConditionalKeysVaryOnlyWhereTheirConditionHolds) {
-  Config config = with({"bank.transition = labels | stay", "bank.stay = 0.8 | 0.9 | 0.95"});
-  config.study.when = {"bank.stay if bank.transition = stay"};
-  const StudySpace space = lay_out(config);
-  const std::vector<StudyPoint> expected{{"labels", "0.95"}, {"stay", "0.8"}, {"stay", "0.9"}, {"stay", "0.95"}};
-  EXPECT_EQ(space.points, expected);
-  EXPECT_EQ(space.repeated, 2u);
-  config.study.when = {"window.length if bank.transition = stay"};
-  EXPECT_THROW(lay_out(config), ConfigurationError);
-}
-
-TEST(StudySpace, ConditionsOnKeysThatAreNotVariedLookAtTheConfiguration) {
-  Config config = with({"bank.stay = 0.8 | 0.9"});
-  config.study.when = {"bank.stay if bank.transition = stay"};
-  EXPECT_EQ(lay_out(config).points.size(), 1u);  // the default value is "labels"
-  config.bank.transition = TransitionSource::stay;
-  EXPECT_EQ(lay_out(config).points.size(), 2u);
-}
-
 TEST(StudySpace, LatinHypercubeFillsEveryStratumOfEveryAxisOnce) {
   Config config = with({"data.lag_s = {0..1 lin}", "filter.variant = imm | kf", "window.prior = {0.001..1 log}"});
   config.study.sample = 20;

@@ -1,4 +1,4 @@
-// The screen at the end of a run: its size, its content, and one case for every rule of the next step.
+// The screen at the end of a run: its size and its content.
 #include "app/text/first_screen.hpp"
 
 #include <gmock/gmock.h>
@@ -32,7 +32,7 @@ void expect_fits(const Archive& archive, const std::string& what) {
   for (std::string line; std::getline(stream, line); ++lines)
     EXPECT_LE(app::columns_of(line), app::screen_columns) << what << ": " << line;
   EXPECT_LE(lines, app::screen_lines) << what << '\n' << screen;
-  for (const char* label : {"read ", "finding ", "modes ", "band ", "mean ", "next ", "archive "})
+  for (const char* label : {"read ", "finding ", "modes ", "band ", "mean ", "archive "})
     EXPECT_THAT("\n" + screen, HasSubstr(std::string("\n") + label)) << what;
   EXPECT_EQ(screen.find('\t'), std::string::npos) << what;
 }
@@ -90,7 +90,7 @@ TEST(FirstScreen, SaysWhatMatters) {
                               "ahead 0.06 rad/s (3.44 deg/s) (drifting 0.08)"));
   EXPECT_THAT(screen,
               AllOf(HasSubstr("1.2 s"),  // 12 samples of 0.1 s each
-                    HasSubstr("ready: `modebank track"), HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
+                    HasSubstr("archive   demo.h5"), Not(HasSubstr("warning"))));
   EXPECT_THAT(screen_of(screen_archive(1, 2, 3, Role::train)), HasSubstr("none held out"));
   Archive parts = screen_archive(1, 2, 3);
   for (std::size_t i = 0; i < 2; ++i) parts.recording->runs[i].run = "drive.b" + std::to_string(i + 1);
@@ -230,8 +230,6 @@ TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {
   EXPECT_EQ(screen.modes.rows[0].cells.size(), screen.modes.headings.size());
   const std::string text = as_one_line(screen_of(archive));
   for (const std::string& said : {screen.finding, screen.modes.rows[0].cells[3]}) EXPECT_THAT(text, HasSubstr(said));
-  EXPECT_EQ(screen.next, "ready: `modebank track ARCHIVE` filters samples as they come");
-  EXPECT_THAT(text, HasSubstr("ready: `modebank track demo.h5` filters")) << "as it can be typed";
 }
 
 TEST(FirstScreen, WhatIsNotKnownIsNoNumber) {
@@ -255,72 +253,13 @@ TEST(FirstScreen, ItsModesAreAtMostEightAndTheOthersAddUp) {
   EXPECT_NEAR(screen.modes.others_use, 0.5 * (std::pow(0.6, 8) - std::pow(0.6, 20)) / 0.4, 1e-12);
 }
 
-struct NextStep : testing::Test {
+TEST(Warnings, ABankWithoutAStableModeWarns) {
   Archive archive = screen_archive(1, 2, 3);
-  app::Settings settings = defaults;
-  DiagnosticsRow& row() { return archive.diagnostics.front(); }
-  std::string advice() const { return app::next_step(archive, settings); }
-};
-
-/// Each advice contains a command.
-TEST_F(NextStep, CanBeTyped) {
-  for (const Answer answer : {Answer::one_mode, Answer::not_comparable, Answer::cannot_tell, Answer::no_evidence,
-                              Answer::evidence, Answer::not_yet})
-    for (const Calibration verdict : {Calibration::calibrated, Calibration::overconfident, Calibration::undecided})
-      for (const Role role : {Role::train, Role::test}) {
-        archive.finding->answer = answer;
-        archive.finding->role = role;
-        row().verdict = verdict;
-        EXPECT_THAT(advice(), HasSubstr("`modebank ")) << name_of(answer) << ", " << name_of(verdict);
-      }
-}
-
-/// The gain is half of the required gain, so four times the runs are needed: margins decrease as 1 / sqrt(runs).
-TEST_F(NextStep, ADoubtfulGainAsksForSoManyRuns) {
-  archive.finding->answer = Answer::cannot_tell;
-  archive.finding->modes_differ = true;
-  archive.finding->runs = 6;
-  archive.finding->gains = {{"drifting", 700, 0.1, 0.08, 5.0, 0.2, false}};
-  EXPECT_THAT(advice(), HasSubstr("record about 18 more runs like these, enough to confirm the gain over drifting"));
-  archive.finding->gains[0].margin = 0.5;
-  EXPECT_THAT(advice(), HasSubstr("the data cannot tell"));
-  archive.finding->gains[0] = {"drifting", 700, 0.01, 0.001, 5.0, 0.003, false, 0.01};
-  EXPECT_THAT(advice(), HasSubstr("ready: use the simpler drifting"));
-  archive.finding->gains[0].gain = 0.1;
-  archive.finding->stay = 2.0;
-  archive.finding->stay_asked = 5.0;
-  EXPECT_THAT(advice(), HasSubstr("the data cannot tell modes this short"));
-}
-
-TEST_F(NextStep, ABankWithoutAStableModeWarns) {
   for (Mode& mode : archive.bank->modes) mode.model.A(0, 0) = 0.01;
   EXPECT_THAT(app::archive_warnings(archive),
-              ElementsAre(testing::Field(&app::Warning::text,
-                                         HasSubstr("no mode of the bank is stable (spectral radius 1.01)"))));
-  EXPECT_THAT(advice(), HasSubstr("--data.state STATES"));
+              ElementsAre(HasSubstr("no mode of the bank is stable (spectral radius 1.01)")));
   archive.bank->modes.back().model.A(0, 0) = -0.2;
   EXPECT_THAT(app::archive_warnings(archive), IsEmpty());
-}
-
-/// A warning has priority over advice on use.
-TEST_F(NextStep, WarningsComeBeforeUse) {
-  archive.mixture.emplace();
-  archive.mixture->candidates.resize(1);
-  archive.mixture->candidates[0].selected = true;
-  archive.mixture->candidates[0].restarts = 5;
-  EXPECT_THAT(advice(), HasSubstr("--mixture.restarts 20"));
-  settings["mixture.restarts"] = "20";
-  EXPECT_THAT(advice(), Not(HasSubstr("--mixture.restarts")));
-  archive.unrefined = archive.bank;
-  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track")) << "refinement replaced the mixture";
-  archive.unrefined.reset();
-  archive.mixture->candidates[0].agreeing_restarts = 5;
-  archive.mixture->candidates[0].converged = true;
-  EXPECT_THAT(advice(), HasSubstr("ready: `modebank track"));
-  archive.mixture->candidates[0].floor_active = true;
-  EXPECT_THAT(advice(), AllOf(HasSubstr("--mixture.components"), Not(HasSubstr("ready"))));
-  archive.measured_fit = MeasuredFit::iteration_limit;
-  EXPECT_THAT(advice(), HasSubstr("--bank.measurement_variance VARIANCE"));
 }
 
 }  // namespace

@@ -120,26 +120,5 @@ TEST(ModeFamilies, HaveARowOfTheTableAndALineOfShow) {
   EXPECT_THAT(app::modes_in_words(archive), Not(HasSubstr("families")));
 }
 
-/// Steady gains of -1 and 1 (rad/s)/(m/s) give a track of 1 m. Gains of -0.8 and 0.8 give 1.25 m.
-TEST(ModeFamilies, ARobotOnWheelsHasATrackWidth) {
-  Archive archive = screen_archive(1, 2, 2);
-  archive.recording->inputs = {{"velL", "m/s"}, {"velR", "m/s"}};
-  archive.bank->structure.intercept = false;
-  for (Mode& mode : archive.bank->modes) {
-    mode.model.A << -0.5;
-    mode.model.B << -0.5, 0.5;
-    mode.standard_error = Eigen::Vector3d::Constant(1e-6);
-    mode.parameter_covariance.resize(0, 0);
-  }
-  archive.bank->modes[1].model.B *= 0.8;
-  app::ModeTable table = app::mode_table(archive);
-  ASSERT_EQ(table.rows.size(), 2u);
-  EXPECT_EQ(table.headings[4], "track width");
-  EXPECT_THAT(table.rows[0].cells[4], testing::StartsWith("1.00000"));
-  EXPECT_THAT(table.rows[1].cells[4], testing::StartsWith("1.25000"));
-  archive.recording->inputs[0].name = "throttle";
-  EXPECT_EQ(app::mode_table(archive).headings[4], "wz per throttle");
-}
-
 }  // namespace
 }  // namespace modebank::test

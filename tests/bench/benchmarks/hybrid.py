@@ -4,7 +4,7 @@ from benchmark import Arguments, head, line, numbers
 from hybrid_systems import seed_scores, simulator
 
 PROTOCOL = """DATA/hybrid/simulate.py, seed 1: twelve runs of 1500 samples, those at odd positions held out; intercept, window.step = 5, components = 1..6, bank.transition = logit.
-Nats per sample one step ahead, joint over the states; free run: x[0] given, then inputs alone, RMSE per state. Nobody but us has published on these systems; `make guards` has more seeds."""
+Nats per sample one step ahead, joint over the states; free run: x[0] given, then inputs alone, RMSE per state. Nobody but us has published on these systems."""
 
 
 def main():

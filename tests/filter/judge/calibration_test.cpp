@@ -130,7 +130,6 @@ TEST(Calibration, NeedsAMeanNisNearOneAndWhiteErrorsOfEverySignal) {
   EXPECT_EQ(narrow.verdict, Calibration::overconfident);
   const DiagnosticsRow small = row_of({series(0.0)}, FilterNoise::gaussian, 0.5);  // chi-square, so its tenth decides
   EXPECT_EQ(small.verdict, Calibration::underconfident);
-  EXPECT_NE(small.flags.find("mean NIS below the interval of a correct model"), std::string::npos);
   for (const double nis : {0.7, 1.44}) {  // the band holds
     const DiagnosticsRow row = row_of({series(0.0), series(0.0)}, FilterNoise::adaptive, nis);
     EXPECT_EQ(row.verdict, Calibration::undecided) << nis;

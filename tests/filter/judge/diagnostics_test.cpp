@@ -38,15 +38,15 @@ std::vector<Trajectory> truth_runs(const Bank& bank, Index runs, Index samples) 
 
 bool inside(double value, double lower, double upper) { return value >= lower && value <= upper; }
 
-TEST(Diagnostics, ATrueFilterIsInsideItsBoundsAndAWrongOneIsNot) {
+TEST(Diagnostics, ATrueFilterHasTheMeansOfItsStatesAndAWrongOneHasNot) {
   for (const Index n : {1, 2}) {
     Bank bank = test::single_mode(example_bank(n, 1, 1, 5e-5), 0);  // Q = 1.3e-4
     const std::vector<Trajectory> runs = truth_runs(bank, 4, 1500);
     const DiagnosticsRow right = diagnose_runs(bank, runs).front();
-    EXPECT_TRUE(inside(right.nis_mean, right.nis_lower, right.nis_upper)) << right.nis_mean;
-    EXPECT_TRUE(inside(right.nees_mean, right.nees_lower, right.nees_upper)) << right.nees_mean;
     EXPECT_EQ(right.verdict, Calibration::calibrated);
-    EXPECT_NEAR(right.nis_mean, static_cast<double>(n), 0.1);
+    const auto states = static_cast<double>(n);
+    EXPECT_NEAR(right.nis_mean, states, 0.1);
+    EXPECT_NEAR(right.nees_mean, states, 0.15);
     EXPECT_EQ(right.flags, "");
     for (const double factor : {0.25, 4.0})
       for (const bool process : {true, false}) {
@@ -57,8 +57,8 @@ TEST(Diagnostics, ATrueFilterIsInsideItsBoundsAndAWrongOneIsNot) {
           wrong.R *= factor;
         const DiagnosticsRow row = diagnose_runs(wrong, runs).front();
         const std::string what = (process ? "Q x " : "R x ") + std::to_string(factor);
-        EXPECT_FALSE(inside(row.nis_mean, row.nis_lower, row.nis_upper)) << what << ": " << row.nis_mean;
-        EXPECT_FALSE(inside(row.nees_mean, row.nees_lower, row.nees_upper)) << what << ": " << row.nees_mean;
+        EXPECT_GT(std::abs(row.nis_mean - right.nis_mean), 0.1 * states) << what;
+        EXPECT_GT(std::abs(row.nees_mean - right.nees_mean), 0.03 * states) << what;
         EXPECT_EQ(row.nis_mean > right.nis_mean, factor < 1.0) << what;
       }
   }
@@ -74,24 +74,13 @@ TEST(Diagnostics, FewSamplesAllowNoVerdictUnlessTheyArePlain) {
   EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Calibration::overconfident);
 }
 
-TEST(Diagnostics, FlagsAStateCovarianceThatIsWrong) {
-  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-3), 0);
-  const std::vector<Trajectory> runs = truth_runs(bank, 2, 1500);
-  for (const double factor : {1.0 / 16, 16.0}) {
-    Bank wrong = bank;
-    wrong.modes[0].Q *= factor;
-    EXPECT_THAT(diagnose_runs(wrong, runs).front().flags,
-                testing::HasSubstr(factor < 1 ? "NEES above the interval" : "NEES below the interval"));
-  }
-}
-
 TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 800);
   EXPECT_TRUE(std::isfinite(diagnose_runs(bank, runs).front().nees_mean));
   bank.R *= 1e-6;
   const DiagnosticsRow row = diagnose_runs(bank, runs).front();
-  EXPECT_TRUE(std::isnan(row.nees_mean) && std::isnan(row.nees_upper));
+  EXPECT_TRUE(std::isnan(row.nees_mean));
   EXPECT_NEAR(row.state_rmse(0), 1e-3, 1e-4);
   EXPECT_THAT(row.flags, testing::HasSubstr("no NEES"));
 }
@@ -103,7 +92,6 @@ TEST(Diagnostics, NeesIsAboutTheStatesThatAreNotTheMeasurement) {
   bank.R(1, 1) = 1e-13;
   const DiagnosticsRow row = diagnose_runs(bank, runs).front();
   EXPECT_NEAR(row.nees_mean, 1.0, 0.35);  // one degree of freedom; the filter assumes too much noise for the other gyro
-  EXPECT_LT(row.nees_upper, 1.2);
   EXPECT_THAT(row.flags, testing::HasSubstr("NEES only of the other states"));
 }
 

@@ -1,4 +1,4 @@
-// Mean NIS and NEES with their intervals, with and without missing signals: closed forms and simulation.
+// Mean NIS, and the interval of the verdict, with and without missing signals: closed forms and simulation.
 #include "filter/judge/score/squared_distances.hpp"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ TEST(SquaredDistances, AMeanCountsSamplesByTheirDegrees) {
   distances.add(std::nan(""), 0);                        // no signal
   EXPECT_DOUBLE_EQ(mean_distance(distances, 3.0), 6.0);  // sum 12 divided by 6 degrees, times 3
   EXPECT_TRUE(std::isnan(mean_distance({}, 1.0)));
-  EXPECT_TRUE(std::isnan(mean_distance_interval({}, 1.0, true).lower));
+  EXPECT_TRUE(std::isnan(mean_distance_interval({}, 1.0, 0.95).lower));
 }
 
 /// Quantiles of chi-square with 100 degrees of freedom are 74.22 and 129.56. The distribution of the degrees over the
@@ -42,10 +42,10 @@ TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   for (const Index degrees : {1, 4}) {
     const SquaredDistances whole =
         distances_of(std::vector<double>(static_cast<std::size_t>(100 / degrees), 1.0), degrees);
-    const Interval interval = mean_distance_interval(whole, 1.0, true);
+    const Interval interval = mean_distance_interval(whole, 1.0, 0.95);
     EXPECT_NEAR(interval.lower, 0.7422, 5e-5);
     EXPECT_NEAR(interval.upper, 1.2956, 5e-5);
-    EXPECT_NEAR(mean_distance_interval(whole, 4.0, true).upper, 4.0 * 1.2956, 2e-4);
+    EXPECT_NEAR(mean_distance_interval(whole, 4.0, 0.95).upper, 4.0 * 1.2956, 2e-4);
   }
 }
 
@@ -57,37 +57,9 @@ TEST(SquaredDistances, RelatedSamplesAreFewer) {
     once.push_back(static_cast<double>(generator() >> 11));
     twice.insert(twice.end(), {once.back(), once.back()});
   }
-  const Interval a = mean_distance_interval(distances_of(once), 1.0, true),
-                 b = mean_distance_interval(distances_of(twice), 1.0, true);
+  const Interval a = mean_distance_interval(distances_of(once), 1.0, 0.95),
+                 b = mean_distance_interval(distances_of(twice), 1.0, 0.95);
   EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
-}
-
-/// The interval of the sum is as wide as the root of the dispersion says, apart from terms of the order of 1 / samples.
-double dispersion(const SquaredDistances& distances) {
-  const Interval own = mean_distance_interval(distances, 1.0, false),
-                 gaussian = mean_distance_interval(distances, 1.0, true);
-  return std::pow((own.upper - own.lower) / (gaussian.upper - gaussian.lower), 2);
-}
-
-/// The dispersion is 1 for chi-square variables with any degrees. For this mixture it is known in closed form:
-/// variances 1 and 9 with equal probability, mean 5, variance 98.
-TEST(SquaredDistances, DispersionIsThatOfTheLaw) {
-  std::mt19937_64 generator(5);
-  boost::random::normal_distribution<double> normal;
-  SquaredDistances single;
-  single.begin_run();
-  std::vector<double> mixture;
-  for (int k = 0; k < 200000; ++k) {
-    const double square = std::pow(normal(generator), 2), other = std::pow(normal(generator), 2);
-    if (k % 3 == 0)
-      single.add(3.0 * square, 1);
-    else
-      single.add(3.0 * (square + other), 2);
-    mixture.push_back((k % 2 == 0 ? 1.0 : 9.0) * square);
-  }
-  EXPECT_NEAR(dispersion(single), 1.0, 0.03);
-  EXPECT_NEAR(dispersion(distances_of(mixture)), (0.5 * (3.0 + 3.0 * 81.0) - 25.0) / 50.0, 0.06);
-  EXPECT_EQ(dispersion(distances_of({0.0, 0.0})), 1.0);
 }
 
 /// A run of the bank. Each signal is missing independently with this probability.
@@ -115,9 +87,6 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
     EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables must define the mean NIS in the
                                                                          // same way
-    EXPECT_LT(row.nis_lower, 3.0);
-    EXPECT_GT(row.nis_upper, 3.0);
-    EXPECT_NEAR(row.nis_upper - row.nis_lower, 2.0 * 1.96 * 3.0 * std::sqrt(2.0 / signals), 0.02) << missing;
     EXPECT_EQ(row.verdict, Calibration::calibrated) << missing;
   }
 }
@@ -137,7 +106,7 @@ TEST(SquaredDistances, TheIntervalCoversWithMissingSignals) {
       for (Index i = 0; i < degrees; ++i) square += std::pow(normal(generator), 2);
       distances.add(square, degrees);
     }
-    const Interval interval = mean_distance_interval(distances, 4.0, true);
+    const Interval interval = mean_distance_interval(distances, 4.0, 0.95);
     const double mean = mean_distance(distances, 4.0);
     inside += mean >= interval.lower && mean <= interval.upper ? 1 : 0;
   }

@@ -1,4 +1,4 @@
-// Look-ahead learning: its scores, and shrinking towards one motion.
+// Look-ahead learning: its scores, and the prior towards one motion.
 #include "filter/judge/run/look_ahead.hpp"
 
 #include <cmath>
@@ -6,7 +6,6 @@
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/horizon.hpp"
 #include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/global_model.hpp"

@@ -1,4 +1,4 @@
-// Growth of the second moments of switching systems, and shrinking modes until they are stable.
+// Growth of the second moments of switching systems.
 #include "filter/learn/switching/mean_square_growth.hpp"
 
 #include <gtest/gtest.h>
@@ -10,17 +10,14 @@
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 
-#include "filter/learn/switching/shrinkage.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
 using Eigen::Index;
 using Eigen::MatrixXd;
-using test::near;
 
 /// Largest eigenvalue of the operator on second moments, written as one matrix with blocks T_ij (F_i (x) F_i).
 double growth_by_kronecker(const LinearStructure& structure, const SwitchingRegression& model) {
@@ -130,61 +127,6 @@ TEST(MeanSquareGrowth, OfDefectiveSystemsIsTheSquaredRadius) {
 
 TEST(MeanSquareGrowth, OfAModeThatIsNotFiniteIsInfinite) {
   EXPECT_TRUE(std::isinf(growth_of({MatrixXd::Constant(2, 2, not_a_number), MatrixXd::Zero(2, 2)}, sticky(2, 0.9))));
-}
-
-/// Two states; mode 0 is unstable in one direction, mode 1 is stable.
-SwitchingRegression growing_model() {
-  Eigen::MatrixXd theta(6, 2);  // rows of [A B]
-  theta << 0.3, -0.2, 0.2, 0.3, 0.1, 1.0, 0.0, 0.1, -0.4, -0.3, 0.5, 0.0;
-  return {theta,
-          {Eigen::MatrixXd::Identity(2, 2), Eigen::MatrixXd::Identity(2, 2)},
-          Eigen::Matrix2d{{0.9, 0.1}, {0.2, 0.8}},
-          Eigen::Vector2d(0.5, 0.5)};
-}
-
-TEST(Shrinkage, TakesUnstableModesTheLeastWayToMeanSquareStability) {
-  const LinearStructure structure{2, 1, false};
-  const SwitchingRegression model = growing_model();
-  ASSERT_GT(growth_by_kronecker(structure, model), 1.01);
-  EXPECT_NEAR(mean_square_growth(structure, model), growth_by_kronecker(structure, model), 1e-8);
-  const Eigen::VectorXd target = model.theta.col(1);
-  const auto stable = shrunk_to_stability(structure, model, target, {});
-  ASSERT_TRUE(stable);
-  EXPECT_EQ(stable->shrinking.modes, 1);
-  EXPECT_NEAR(stable->shrinking.growth, growth_by_kronecker(structure, model), 1e-9);
-  EXPECT_EQ(stable->model.theta.col(1), model.theta.col(1)) << "a mode that is stable by itself stays";
-  EXPECT_LE(growth_by_kronecker(structure, stable->model), 1.0 + 2e-4);
-  const Eigen::VectorXd way = target - model.theta.col(0);
-  const double share = stable->shrinking.share;
-  EXPECT_TRUE(near(stable->model.theta.col(0), model.theta.col(0) + share * way, 1e-12));
-  SwitchingRegression less = stable->model;
-  less.theta.col(0) = model.theta.col(0) + (share - 0.005) * way;
-  EXPECT_GT(growth_by_kronecker(structure, less), 1.0);
-}
-
-TEST(Shrinkage, LeavesStableSystemsAndHopelessOnes) {
-  const LinearStructure structure{2, 1, false};
-  SwitchingRegression model = growing_model();
-  const Eigen::VectorXd unstable = model.theta.col(0);
-  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
-  model.theta.col(0) = model.theta.col(1);
-  EXPECT_FALSE(shrunk_to_stability(structure, model, unstable, {}));
-}
-
-// By the dense eigenvalue all these systems are mean-square stable, so no mode may be shrunk.
-TEST(Shrinkage, LeavesLightlyDampedOscillatorsAlone) {
-  std::mt19937_64 generator(11);
-  boost::random::uniform_real_distribution<double> uniform;
-  const LinearStructure structure{2, 0, false};
-  int stable = 0;
-  while (stable < 24) {
-    const std::vector<MatrixXd> F{oscillator(0.97 + 0.03 * uniform(generator), 0.1 + 1.5 * uniform(generator)),
-                                  oscillator(0.97 + 0.03 * uniform(generator), 0.1 + 1.5 * uniform(generator))};
-    const SwitchingRegression model = model_of(structure, F, sticky(2, 0.99 + 0.008 * uniform(generator)));
-    if (growth_by_kronecker(structure, model) >= 1.0) continue;
-    ++stable;
-    EXPECT_FALSE(shrunk_to_stability(structure, model, model.theta.rowwise().mean(), {})) << stable;
-  }
 }
 
 }  // namespace

@@ -77,21 +77,6 @@ TEST(WeightedMode, PriorMaximisesThePenalisedLikelihood) {
   EXPECT_TRUE(near(slope.reshaped(), pull, 1e-7 * pull.norm())) << "the gradient is zero";
 }
 
-TEST(WeightedMode, WithOneModeIsTheGlobalModelOfTheSampleWeights) {
-  WeightedData data;
-  for (Trajectory& run : data.recording.runs)
-    run.weight = Eigen::VectorXd::LinSpaced(run.samples(), 0.0, 2.0).array().square();
-  const GlobalModel global = fit_global(data.recording, data.structure);
-  EXPECT_GT((global.theta - data.global.theta).norm(), 1e-3);
-  const TrainingTransitions transitions = gather_training_transitions(data.recording, data.structure);
-  // The first weight of a run belongs to no transition.
-  EXPECT_NEAR(transitions.usable.mean(), 1.0, exact);
-  const ModeEstimate mode = fit_weighted_mode(transitions, transitions.usable, global, nullptr);
-  EXPECT_TRUE(near(mode.theta, global.theta, exact));
-  EXPECT_TRUE(near(mode.Q, global.residual_covariance, exact));
-  EXPECT_TRUE(near(mode.standard_error, global.covariance.diagonal().cwiseSqrt(), exact));
-}
-
 TEST(WeightedMode, WithOneModeAndNoPriorIsTheGlobalModel) {
   const WeightedData data;
   const Eigen::VectorXd ones = Eigen::VectorXd::Ones(data.transitions.count());

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <tbb/parallel_for.h>
-
-#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -10,7 +7,6 @@
 
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
-#include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
@@ -110,44 +106,6 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
 inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
                                            Index samples = 1000) {
   return row_of(bank, simulated_recording(truth, 4, samples, seed + 1000).runs);
-}
-
-/// Interval for the mean NEES of a learned bank, whose expected value is about n. The interval includes the scatter for
-/// a correct model (the interval of `row`) and the effect of the bank's own error. By the delta method this effect is
-/// g' Sigma g. g is the derivative of log mean NEES on the held-out runs with respect to the bank's coordinates. Sigma
-/// is the covariance of the coordinates, the inverse of the training runs' information.
-struct NeesInterval {
-  double lower, upper;
-  double parameter_sd, filter_sd;  ///< standard deviations of log mean NEES
-};
-
-inline NeesInterval learned_nees_interval(const Bank& bank, const Bank& truth, const Recording& training,
-                                          std::uint64_t seed, const DiagnosticsRow& row) {
-  const Index n_y = bank.R.rows();
-  FreeParameters free;
-  free.theta_unit.resize(bank.structure.parameters(), bank.mode_count());
-  for (Index j = 0; j < bank.mode_count(); ++j)
-    free.theta_unit.col(j) = bank.modes[static_cast<std::size_t>(j)].standard_error;
-  for (Index i = 0; i < n_y; ++i) free.R.push_back(i);
-  free.least_R = Eigen::VectorXd::Zero(n_y);
-  free.transition = bank.mode_count() > 1;
-  const BankCoordinates around(bank, free);
-  constexpr double step = 1e-2;
-  const auto moved = [&](Index c, double by) { return around.decode(by * Eigen::VectorXd::Unit(around.size(), c)); };
-  const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), step);
-  const Eigen::MatrixXd information = sample_gradients(around, steps, training, {}).information;
-  Eigen::VectorXd gradient(around.size());
-  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
-    gradient(c) = std::log(held_out_diagnostics(moved(c, step), truth, seed).nees_mean /
-                           held_out_diagnostics(moved(c, -step), truth, seed).nees_mean) /
-                  (2.0 * step);
-  });
-  constexpr double two_sided = 1.959964;
-  const auto states = static_cast<double>(bank.structure.states);
-  const double filter_sd = std::log(row.nees_upper / row.nees_lower) / (2.0 * two_sided);
-  const double parameter_sd = std::sqrt(gradient.dot(information.ldlt().solve(gradient)));
-  const double reach = two_sided * std::hypot(filter_sd, parameter_sd);
-  return {states * std::exp(-reach), states * std::exp(reach), parameter_sd, filter_sd};
 }
 
 }  // namespace modebank::test

@@ -75,20 +75,6 @@ TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
     }
 }
 
-/// Only ratios of sample weights matter. A weight of zero excludes a sample.
-TEST(MaximiseLikelihood, CountsSamplesByTheirWeights) {
-  const Bank truth = test::true_scalar(1.0);
-  Recording recording = simulated_recording(truth, 2, 60, 7);
-  const SwitchingPrior prior = theta_known(recording, truth.structure);
-  const LikelihoodTarget target{recording, {}, prior};
-  const double plain = target.value(truth);
-  for (Trajectory& run : recording.runs) run.weight.setConstant(run.samples(), 3.0);
-  EXPECT_NEAR(target.value(truth), plain, 1e-9 * std::abs(plain));
-  const double last = log_densities(truth, recording.runs[1], {})(59);
-  recording.runs[1].weight(59) = 0.0;
-  EXPECT_NEAR(target.value(truth), plain - last, 1e-9 * std::abs(plain));
-}
-
 TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveOneThetaTogether) {
   const Bank truth = test::true_pair(1.0);
   const BankCoordinates free(truth, everything(truth, 0.1));
@@ -186,8 +172,8 @@ TEST(RefineRecovery, PendulumOfTwoDampingsIsCalibratedOnHeldOutRuns) {
   EXPECT_EQ(refined.measurement.end, MeasuredFit::converged);
   for (const double z : test::z_values(bank, truth)) EXPECT_LT(std::abs(z), 3.0);
   const DiagnosticsRow row = test::held_out_diagnostics(bank, truth, 2);
-  EXPECT_GT(row.nees_mean, row.nees_lower);
-  EXPECT_LT(row.nees_mean, row.nees_upper);
+  const auto states = static_cast<double>(truth.structure.states);
+  EXPECT_NEAR(row.nees_mean, states, 0.15 * states);
   // Switches are rare and large. So NIS is not chi-square, even if the model is correct.
   EXPECT_NEAR(row.nis_mean, test::held_out_diagnostics(truth, truth, 2).nis_mean, 0.05);
 }

@@ -1,4 +1,4 @@
-// Standard errors of a bank from the gradients of single samples: effect of the filter and of sample weights.
+// Standard errors of a bank from the gradients of single samples: effect of the filter.
 #include "filter/learn/likelihood/standard_errors.hpp"
 
 #include <gtest/gtest.h>
@@ -39,21 +39,6 @@ class StandardErrors : public testing::Test {
     EXPECT_TRUE(near(a.transition_standard_error, b.transition_standard_error, tolerance));
   }
 };
-
-/// Only ratios of weights matter. A weight of zero excludes a sample.
-TEST_F(StandardErrors, GoByTheSamplesWeights) {
-  const Bank plain = errors_in(recording, {});
-  Recording weighted = recording;
-  for (Trajectory& run : weighted.runs) run.weight.setConstant(run.samples(), 3.0);
-  expect_same(errors_in(weighted, {}), plain, 1e-12);
-
-  // The samples of the second run have no weight. The information per transition of the first run must not double.
-  weighted.runs[1].weight.setZero();
-  Recording first = recording;
-  first.runs.resize(1);
-  expect_same(errors_in(weighted, {}), errors_in(first, {}), 1e-12);
-  EXPECT_GT(errors_in(weighted, {}).modes[0].standard_error(1), 1.2 * plain.modes[0].standard_error(1));
-}
 
 /// A filter that ignores times makes one step at every gap.
 TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {

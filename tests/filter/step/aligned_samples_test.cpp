@@ -114,19 +114,5 @@ TEST(AlignedSamples, FindTheRateAfterAPause) {
   for (std::size_t k = 4; k < samples.size(); ++k) EXPECT_NEAR(samples[k].time_s - samples[k - 1].time_s, 0.1, 1e-9);
 }
 
-TEST(AlignedSamples, GoOnAtTheRateAfterAPause) {
-  const Recorded run(400, 0.01, 0.0);
-  const std::vector<TimedSample> whole = aligned(run, {10.0, 0.0});
-  AlignedSamples later({10.0, 0.0});
-  later.go_on_after(whole[9].time_s);
-  std::vector<double> times;
-  for (Index k = 91; k < 200; ++k) {
-    later.push({run.time_s(k), run.input.col(k), run.state.col(k)});
-    while (const TimedSample* const ready = later.next()) times.push_back(ready->time_s);
-  }
-  ASSERT_GE(times.size(), 5U);
-  for (std::size_t i = 0; i < times.size(); ++i) EXPECT_NEAR(times[i], whole[10 + i].time_s, 1e-12);
-}
-
 }  // namespace
 }  // namespace modebank

@@ -179,8 +179,7 @@ TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
   const Trajectory run = rounded(test::simulate_bank(bank, samples, 6), quantum);
   const filter::Bank installed(std::make_shared<const Bank>(with_quantum(bank, quantum)));
   filter::BankFilter live(installed);
-  RecordedRun recorded{"", false, {run.time_s.begin(), run.time_s.end()}, to_matrix(run.state), to_matrix(run.input),
-                       {}};
+  RecordedRun recorded{"", false, {run.time_s.begin(), run.time_s.end()}, to_matrix(run.state), to_matrix(run.input)};
   const Matrix of_run = judge::evaluate_run(installed, recorded).pit;
   std::vector<double> pit;
   for (Index k = 0; k < samples; ++k) {

@@ -55,23 +55,20 @@ std::vector<std::pair<std::string, Change>> all_changes(const Bank& bank) {
   return changes;
 }
 
-double weighted_sum(const Bank& bank, const Trajectory& run, const Eigen::VectorXd& weight,
-                    const FilterOptions& options) {
+double known_sum(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const Eigen::ArrayXd densities = log_densities(bank, run, options);
-  const Eigen::ArrayXd known = densities.isNaN().select(0.0, densities);
-  return weight.size() > 0 ? (known * weight.array()).sum() : known.sum();
+  return densities.isNaN().select(0.0, densities).sum();
 }
 
-void expect_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options,
-                     const Eigen::VectorXd& weight = {}) {
+void expect_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   ASSERT_TRUE(has_likelihood_gradient(bank, options));
-  const BankGradient gradient = log_likelihood_gradient(bank, run, weight, options);
+  const BankGradient gradient = log_likelihood_gradient(bank, run, options);
   constexpr double step = 1e-5;
   for (const auto& [name, change] : all_changes(bank)) {
     Bank up = bank, down = bank;
     change(up, step);
     change(down, -step);
-    const double expected = weighted_sum(up, run, weight, options) - weighted_sum(down, run, weight, options);
+    const double expected = known_sum(up, run, options) - known_sum(down, run, options);
     EXPECT_NEAR(gradient.along(down, up), expected, 1e-9 + 2e-6 * std::abs(expected)) << name;
   }
 }
@@ -113,7 +110,6 @@ TEST(LikelihoodGradient, IsThatOfSizesWithoutKernels) {
     run.state.middleCols(20, 2).setConstant(std::nan(""));
     run.time_s.tail(50).array() += 2.0 * longest_gap_steps;
     expect_gradient(bank, run, {});
-    expect_gradient(bank, run, {}, Eigen::VectorXd::LinSpaced(120, 0.0, 2.0));
   }
 }
 
@@ -152,13 +148,6 @@ TEST(LikelihoodGradient, GoesBackOverTheNoiseScale) {
   }
 }
 
-TEST(LikelihoodGradient, CountsSamplesByTheirWeight) {
-  const Bank bank = bank_of(1, 2, 1e-3);
-  const Trajectory run = test::simulate_bank(bank, 50, 7);
-  const Eigen::VectorXd weight = Eigen::VectorXd::LinSpaced(50, 0.0, 2.0);
-  expect_gradient(bank, run, {}, weight);
-}
-
 /// Like bank_of, but signals are multiples of a quantum and R is diagonal.
 Bank quantised_bank(Index n, Index K, double r, double quantum) {
   Bank bank = bank_of(n, K, r);
@@ -195,7 +184,7 @@ TEST(LikelihoodGradient, IsThatOfIntervals) {
 TEST(LikelihoodGradient, IsThatOfIntervalsOfSomeSignals) {
   Bank bank = quantised_bank(3, 3, 1e-4, 0.02);
   bank.quantum(1) = 0.0;
-  expect_gradient(bank, rounded_run(bank, 60, 9), {}, Eigen::VectorXd::LinSpaced(60, 0.0, 2.0));
+  expect_gradient(bank, rounded_run(bank, 60, 9), {});
   Bank part = quantised_bank(2, 3, 1e-4, 0.02);
   part.C = Eigen::MatrixXd{{1.0, 0.5}};
   part.R = Eigen::MatrixXd{{1e-4}};

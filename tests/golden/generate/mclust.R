@@ -1,5 +1,5 @@
 # Golden values for tests/mixture: R's mclust (Scrucca, Fop, Murphy & Raftery 2016), models VVV and VVI on R's data sets
-# `faithful` and `iris`. mclust's BIC and ICL have the opposite sign of ours; the file holds them as mclust gives them.
+# `faithful` and `iris`. mclust's BIC has the opposite sign of ours; the file holds them as mclust gives them.
 # `classification` is the one of its hierarchical start (hc, model VVV) that its EM begins from.
 #
 # Run (Debian: r-base-core r-cran-mclust r-cran-jsonlite):  Rscript tests/golden/generate/mclust.R > tests/golden/data/mclust.json
@@ -14,7 +14,7 @@ fit <- function(data, name, model, G) {
                    verbose = FALSE)
   parameters <- result$parameters
   list(data = name, model = model, components = G, log_likelihood = result$loglik, bic = result$bic,
-       icl = icl(result), parameters = nMclustParams(model, ncol(data), G),
+       parameters = nMclustParams(model, ncol(data), G),
        classification = as.integer(hclass(tree, G)) - 1L, weights = parameters$pro, means = t(parameters$mean),
        covariances = lapply(seq_len(G), function(k) parameters$variance$sigma[, , k]))
 }

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::ptrdiff_t windows = 5000;  // number of windows at which the standard error of a share is 0.003
 
-/// The range of coverage that docs/results/uncertainty.md promises for a case.
+/// The range of coverage that docs/results/simulated.md promises for a case.
 struct Promise {
   CoverageCase which;
   CovarianceKind kind;

@@ -1,141 +1,37 @@
 #include <cmath>
-#include <limits>
 
 #include "ident/fit/fit_window.hpp"
-#include "ident/fit/fit_windows.hpp"
-#include "ident/fit/global_model.hpp"
-#include "ident/fit/scale.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/confidence.hpp"
-#include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
 using test::confidence_region;
-using test::golden_rows;
-using test::near;
-
-/// Both implementations solve a well-conditioned problem with O(1) entries in double precision.
-constexpr double weighted_fit_tolerance = 1e-11;
-/// The golden optima are roots of the estimating equations to about 1e-13.
-constexpr double robust_tolerance = 1e-9;
-
-struct WeightedCase {
-  explicit WeightedCase(const std::string& name) : json(test::read_golden("ident_inference").at(name)) {
-    run = test::make_run(golden_rows(json.at("state")), golden_rows(json.at("input")));
-    if (json.contains("weight")) run.weight = golden_rows(json.at("weight"));
-    structure = {run.state.rows(), run.input.rows(), run.state.rows() > 1};
-    sigma = golden_rows(json.at("sigma"));
-  }
-  LocalModel fit(const FitOptions& options, const ParameterPrior* prior = nullptr) const {
-    return fit_window(run, 0, structure, options, sigma, prior);
-  }
-  LocalModel fit(Loss loss) const { return fit(test::whole_run(run, loss)); }
-  Eigen::MatrixXd expected(const std::string& key) const { return golden_rows(json.at(key)); }
-  double number(const std::string& key) const { return json.at(key).get<double>(); }
-
-  nlohmann::json json;
-  Trajectory run;
-  LinearStructure structure;
-  Eigen::VectorXd sigma;
-};
 
 constexpr Loss all_losses[] = {Loss::trivial, Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan};
 
-TEST(SampleWeights, LeastSquaresAgreesWithStatsmodelsWls) {
-  const WeightedCase c("weighted_least_squares");
-  FitOptions options = test::whole_run(c.run, Loss::trivial);
-  const LocalModel fit = c.fit(options);
-  EXPECT_TRUE(near(fit.theta, c.expected("theta"), weighted_fit_tolerance));
-  EXPECT_TRUE(near(fit.covariance, c.expected("covariance"), weighted_fit_tolerance));
-  EXPECT_NEAR(fit.noise_variance(0), c.number("noise_variance"), weighted_fit_tolerance);
-  EXPECT_TRUE(near(fit.covariance.diagonal().cwiseSqrt(), c.expected("standard_error"), weighted_fit_tolerance));
-  EXPECT_TRUE(near(fit.theta.cwiseQuotient(fit.covariance.diagonal().cwiseSqrt()), c.expected("t_value"), 1e-9));
-  EXPECT_NEAR(fit.r_squared(0), c.number("r_squared"), weighted_fit_tolerance);
-  EXPECT_EQ(fit.transitions, c.json.at("transitions").get<Index>());
-  options.covariance = CovarianceKind::sandwich;
-  EXPECT_TRUE(near(c.fit(options).covariance, c.expected("hc3"), weighted_fit_tolerance));
+/// R^2 about the mean, with the robust weight of each transition in both sums.
+double r_squared(const Trajectory& run, const Eigen::VectorXd& theta, Loss kind, double sigma) {
+  const Index N = run.transitions();
+  const RobustLoss loss(kind, 0.0);
+  const Eigen::ArrayXd d = (run.state.rightCols(N) - run.state.leftCols(N)).transpose();
+  const Eigen::ArrayXd e =
+      d - (theta(0) * run.state.leftCols(N) + theta.tail<2>().transpose() * run.input.leftCols(N)).transpose().array();
+  const Eigen::ArrayXd omega = (e / sigma).square().unaryExpr([&](double square) { return loss(square).weight; });
+  return 1.0 - (omega * e.square()).sum() / (omega * (d - (omega * d).sum() / omega.sum()).square()).sum();
 }
 
-TEST(SampleWeights, EnterTheGlobalModel) {
-  const WeightedCase c("weighted_least_squares");
-  const GlobalModel global = fit_global(test::make_recording({c.run}), c.structure);
-  EXPECT_TRUE(near(global.theta, c.expected("theta"), weighted_fit_tolerance));
-  EXPECT_TRUE(near(global.covariance, c.expected("covariance"), weighted_fit_tolerance));
-  EXPECT_NEAR(global.noise_variance()(0), c.number("population_variance"), weighted_fit_tolerance);
-  EXPECT_EQ(global.transitions, c.json.at("transitions").get<Index>());
-}
-
-TEST(SampleWeights, AreAsManyCopiesOfATransitionForEveryLoss) {
-  const WeightedCase c("repeated_transitions");
-  for (const Loss loss : {Loss::huber, Loss::cauchy, Loss::softlone, Loss::tukey, Loss::arctan}) {
-    const LocalModel fit = c.fit(loss);
-    const std::string name(name_of(loss));
-    EXPECT_TRUE(near(fit.theta, golden_rows(c.json.at("theta").at(name)), robust_tolerance)) << name;
-    EXPECT_NEAR(fit.r_squared(0), c.json.at("r_squared").at(name).get<double>(), robust_tolerance) << name;
-    EXPECT_EQ(fit.status, FitStatus::converged);
-  }
-}
-
-TEST(SampleWeights, ACommonFactorChangesNothing) {
-  WeightedCase c("repeated_transitions");
-  const ParameterPrior prior{Eigen::Vector3d(-0.2, -0.3, 0.4), Eigen::Vector3d(0.1, 0.2, 0.3)};
-  WeightedCase doubled = c, ones = c, none = c;
-  doubled.run.weight *= 2.0;
-  ones.run.weight = Eigen::VectorXd::Constant(c.run.samples(), 2.0);
-  none.run.weight.resize(0);
-  for (const Loss loss : all_losses)
-    for (const CovarianceKind kind : {CovarianceKind::model, CovarianceKind::sandwich}) {
-      FitOptions options = test::whole_run(c.run, loss);
-      options.covariance = kind;
-      for (const auto& [a, b] : {std::pair{&c, &doubled}, {&none, &ones}}) {
-        const LocalModel one = a->fit(options, &prior), two = b->fit(options, &prior);
-        EXPECT_TRUE(near(two.theta, one.theta, 1e-12)) << name_of(loss);
-        EXPECT_TRUE(near(two.covariance, one.covariance, 1e-12)) << name_of(loss);
-        EXPECT_TRUE(near(two.noise_variance, one.noise_variance, 1e-12)) << name_of(loss);
-      }
-    }
-}
-
-TEST(SampleWeights, OfZeroLeaveATransitionOut) {
-  WeightedCase c("repeated_transitions");
-  c.run.weight.setOnes();
-  c.run.weight(12) = 0.0;
-  WeightedCase missing = c;
-  missing.run.weight.resize(0);
-  // Transition 11 ends in sample 12. A NaN state there would also affect transition 12; a NaN input affects only one.
-  missing.run.input(0, 11) = std::nan("");
+TEST(Quality, CountsSamplesByTheirRobustWeights) {
+  constexpr double sigma = 0.05;
+  std::mt19937_64 generator(3);
+  Trajectory run = test::gaussian_run(test::skid_structure, Eigen::Vector3d(-0.3, -0.4, 0.5), sigma, 31, generator);
+  run.state(0, 11) += 0.5;
   for (const Loss loss : all_losses) {
-    const LocalModel zero = c.fit(loss), left_out = missing.fit(loss);
-    EXPECT_TRUE(near(zero.theta, left_out.theta, 1e-12)) << name_of(loss);
-    EXPECT_TRUE(near(zero.covariance, left_out.covariance, 1e-12)) << name_of(loss);
-    EXPECT_EQ(zero.transitions, 29);
+    const LocalModel fit = fit_window(run, 0, test::skid_structure, test::whole_run(run, loss),
+                                      Eigen::VectorXd::Constant(1, sigma), nullptr);
+    EXPECT_NEAR(fit.r_squared(0), r_squared(run, fit.theta, loss, sigma), 1e-12) << name_of(loss);
   }
-}
-
-TEST(SampleWeights, WeighTheMedians) {
-  const Eigen::VectorXd values{{3.0, -1.0, 7.0, 2.0}}, copies{{3.0, 3.0, -1.0, 7.0, 7.0, 7.0, 2.0}};
-  EXPECT_EQ(normalised_mad(values, Eigen::VectorXd{{2.0, 1.0, 3.0, 1.0}}), normalised_mad(copies));
-  EXPECT_EQ(normalised_mad(values, Eigen::VectorXd::Constant(4, 0.3)), normalised_mad(values));
-  Trajectory run = WeightedCase("repeated_transitions").run;
-  const auto fits = [&] { return fit_windows(test::make_recording({run}), FitOptions{}); };
-  run.weight *= 5.0;
-  const WindowFits five = fits();
-  run.weight /= 5.0;
-  EXPECT_TRUE(near(five.parameters, fits().parameters, 1e-12));
-  EXPECT_TRUE(near(five.prior_sd, fits().prior_sd, 1e-12));
-}
-
-TEST(SampleWeights, MustBeOnePerSampleAndNotNegative) {
-  WeightedCase c("repeated_transitions");
-  for (const double bad : {-1.0, std::nan(""), std::numeric_limits<double>::infinity()}) {
-    c.run.weight(3) = bad;
-    EXPECT_THROW(c.fit(Loss::huber), std::invalid_argument);
-    EXPECT_THROW(fit_global(test::make_recording({c.run}), c.structure), std::invalid_argument);
-  }
-  c.run.weight.setOnes(5);
-  EXPECT_THROW(c.fit(Loss::huber), std::invalid_argument);
 }
 
 TEST(Quality, OfAConstantStateIsUndefined) {

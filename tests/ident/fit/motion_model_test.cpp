@@ -201,35 +201,6 @@ TEST(MotionModel, LinearModelThroughEitherDoorIsTheSame) {
       }
 }
 
-TEST(MotionModel, SampleWeightsEnterTheScaleAsInTheLinearDoor) {
-  std::mt19937_64 generator(37);
-  for (const LinearStructure& structure : {test::skid_structure, LinearStructure{2, 1, true}}) {
-    const Eigen::VectorXd theta = Eigen::VectorXd::LinSpaced(structure.parameters(), -0.4, 0.3);
-    Trajectory run = test::gaussian_run(structure, theta, 0.1, 90, generator);
-    run.weight = Eigen::VectorXd::Ones(run.samples());
-    for (Index k = 0; k < run.samples(); ++k)
-      if (k % 3 == 0) {  // a third of the samples is wrong and has weight zero
-        run.state.col(k).array() += k % 2 ? 2.0 : -1.0;
-        run.weight(k) = k % 9 == 0 ? 0.0 : 0.01;
-      }
-    const Recording recording = test::make_recording({run});
-    for (const double sigma : {0.0, 0.1}) {
-      FitOptions options;
-      options.prior = Prior::none;
-      options.sigma = sigma;
-      options.intercept = structure.intercept;
-      options.step = 5;
-      const WindowFits linear = fit_windows(recording, options),
-                       general = fit_windows(recording, options, *test::make_linear_motion(structure));
-      for (Index i = 0; i < linear.count(); ++i) {
-        EXPECT_LT((general.parameters.col(i) - linear.parameters.col(i)).norm(), 1e-7) << "window " << i;
-        EXPECT_LT((general.noise_variance.col(i) - linear.noise_variance.col(i)).norm(),
-                  1e-7 * linear.noise_variance.col(i).norm());
-      }
-    }
-  }
-}
-
 TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
   const auto model = make_motion_model("slip", {1, 2, 0.165});
   std::mt19937_64 generator(29);
@@ -252,7 +223,7 @@ TEST(MotionModel, UnexcitedWindowsAreAStatusAndTakeThePrior) {
   EXPECT_TRUE(std::isnan(fit_windows(test::make_recording({still, moving}), options).at(0).covariance(0, 0)));
 }
 
-/// docs/howto/own_model.md shows tests/ident/fit/decay.hpp.
+/// docs/howto/how_many_modes.md shows tests/ident/fit/decay.hpp.
 TEST(MotionModel, TheExampleOfThePagesIsAWholeModel) {
   const auto model = models::make_decay({});
   const Eigen::Vector2d theta(0.7, 1.3);

@@ -243,18 +243,6 @@ TEST(StructureSearch, TakesTheSmallestExactStructure) {
   EXPECT_EQ(lags_of(find(simulate(exact, 0))), (std::array<Index, 3>{2, 1, 1}));
 }
 
-TEST(StructureSearch, LeavesOutSamplesOfNoWeight) {
-  System second;
-  second.a = {1.5, -0.7};
-  Recording recording = simulate(second, 4);
-  for (Trajectory& run : recording.runs) {
-    run.weight = Eigen::VectorXd::Ones(run.samples());
-    run.state.row(0).segment(100, 30).array() += 100.0;
-    run.weight.segment(100, 45).setZero();  // transitions that end in the shifted samples, or whose lags reach them
-  }
-  EXPECT_EQ(lags_of(find(recording)), (std::array<Index, 3>{2, 1, 1}));
-}
-
 /// All structures use the same rows at the start of runs and after missing samples. These are the rows with a full
 /// history for the most lags.
 TEST(LaggedRows, HaveTheirFullHistory) {

@@ -144,11 +144,7 @@ void expect_same(const DiagnosticsRow& actual, const DiagnosticsRow& expected) {
                             &DiagnosticsRow::too_close_lower,
                             &DiagnosticsRow::too_close_upper,
                             &DiagnosticsRow::nis_mean,
-                            &DiagnosticsRow::nis_lower,
-                            &DiagnosticsRow::nis_upper,
                             &DiagnosticsRow::nees_mean,
-                            &DiagnosticsRow::nees_lower,
-                            &DiagnosticsRow::nees_upper,
                             &DiagnosticsRow::whiteness_p,
                             &DiagnosticsRow::autocorrelation})
     EXPECT_EQ(actual.*member, expected.*member);
@@ -251,9 +247,6 @@ void expect_same(const Bank& actual, const Bank& expected) {
   EXPECT_EQ(actual.state_names, expected.state_names);
   EXPECT_EQ(actual.input_names, expected.input_names);
   EXPECT_EQ(actual.dt_s, expected.dt_s);
-  EXPECT_EQ(actual.shrinking.modes, expected.shrinking.modes);
-  EXPECT_EQ(actual.shrinking.share, expected.shrinking.share);
-  EXPECT_EQ(actual.shrinking.growth, expected.shrinking.growth);
   ASSERT_EQ(actual.screened.size(), expected.screened.size());
   for (std::size_t i = 0; i < actual.screened.size(); ++i) {
     EXPECT_EQ(actual.screened[i].component, expected.screened[i].component);

@@ -27,7 +27,6 @@ Recording make_recording(Index n, Index m) {
     run.time_s = Eigen::VectorXd::LinSpaced(samples, 0.1, 3.0);
     run.state = pattern(n, samples, 1000.0 * static_cast<double>(r));
     run.input = pattern(m, samples, 0.0);
-    if (r == 0) run.weight = pattern(samples, 1, 0.5);
     if (r != 2) run.truth = pattern(n, samples, 7.0);
     run.lag_s = 0.1 * static_cast<double>(r);
     recording.runs.push_back(run);
@@ -106,10 +105,10 @@ MixtureResult make_mixture(const WindowFits& fits) {
   Eigen::MatrixXd responsibilities = Eigen::MatrixXd::Constant(modes, count, not_a_number);
   responsibilities.leftCols(3) = share_pattern(modes, 3, 40.0);
   result.responsibilities = responsibilities;
-  result.candidates.push_back({2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 4.0 / 3.0, not_a_number,
-                               17, false, 1, false, 0.5, 5, true, CandidateStatus::fitted, not_a_number, ""});
-  result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 0.3, -1.5, 40, true, 4, true, 0.6,
-                               5, false, CandidateStatus::failed, 0.25, "its covariance is singular"});
+  result.candidates.push_back({2, CovarianceType::full, -10.25, 13, 7.5, 1.0 / 3.0, 2.0 / 3.0, 17, false, 1, false, 0.5,
+                               5, true, CandidateStatus::fitted, ""});
+  result.candidates.push_back({3, CovarianceType::diagonal, -9.5, 20, 7.5, 0.1, 0.2, 40, true, 4, true, 0.6, 5, false,
+                               CandidateStatus::failed, "its covariance is singular"});
   return result;
 }
 
@@ -156,7 +155,6 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.transition_weight_error = pattern(count, features, 97.0);
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
-  if (uncertain) bank.shrinking = {2, 0.125, 1.5};
   return bank;
 }
 

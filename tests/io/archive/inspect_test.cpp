@@ -28,7 +28,7 @@ class Inspect : public ::testing::Test {
 TEST_F(Inspect, TheRootListsGroupsAndTheirMembers) {
   const json root = at("/");
   EXPECT_EQ(root["attributes"]["format"], "modebank");
-  EXPECT_EQ(root["attributes"]["schema_version"], "3.0");
+  EXPECT_EQ(root["attributes"]["schema_version"], "4.0");
   EXPECT_EQ(root["members"]["config"], json::parse(R"({"kind": "dataset", "shape": []})"));
   EXPECT_EQ(root["members"]["bank"]["kind"], "group");
   const json& members = root["members"]["bank"]["members"];

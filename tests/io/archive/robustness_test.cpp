@@ -65,11 +65,9 @@ TEST_F(Robustness, D2EveryIndexIsOfSomethingThatIsThere) {
   refuses_number("/evaluation/baseline/free_run_mode", 0, 1, "free_run_mode: holds 1 at (0), must lie in -1 .. 0");
   finds_number("/windows/start", 0, -1e6, "/windows/start: holds");
   refuses_number("/windows/start", 0, 1e6, "reaches beyond run");
-  finds_number("/windows/rank", 0, 9, "/windows/rank: holds 9 at (0), must lie in 0 .. 8");
   refuses_number("/data/label", 0, 2, "beyond the 2 label_names");
   refuses([&] { patch_cell(path, "/evaluation/diagnostics", "mode", 1, 3); }, "column 'mode' holds 3 at (1)");
   refuses([&] { patch_cell(path, "/evaluation/confusion", "mode", 0, -1); }, "column 'mode' holds -1");
-  finds([&] { patch_cell(path, "/evaluation/summary", "samples", 0, -5); }, "column 'samples' holds -5");
 }
 
 TEST_F(Robustness, D2NumbersOfAModelThatCannotBe) {
@@ -107,7 +105,6 @@ TEST_F(Robustness, D2ProbabilitiesThatDoNotSumToOne) {
   finds_number("/bank/transition", 0, 0.5, "/bank/transition: holds probabilities that sum to 0.8");
   finds_number("/bank/initial_probability", 0, 0.0, "/bank/initial_probability: holds probabilities");
   finds_number("/mixture/weights", 0, 0.1, "the weights sum to");
-  finds_number("/mixture/responsibilities", 0, 1.5, "/mixture/responsibilities: holds 1.5");
 }
 
 TEST_F(Robustness, D2TimesAndNamesThatCannotBe) {
@@ -127,42 +124,7 @@ TEST_F(Robustness, D2TimesAndNamesThatCannotBe) {
       "pit: has shape (38, 2), but S is 39");
 }
 
-TEST_F(Robustness, ComputedSpreadsSharesAndAmountsThatCannotBe) {
-  for (const std::string spread :
-       {"/windows/covariance", "/windows/global/covariance", "/windows/global/residual_covariance",
-        "/bank/parameter_covariance", "/evaluation/bank/covariance", "/evaluation/bank/innovation_covariance",
-        "/evaluation/bank/smoothed_covariance"})
-    finds_number(spread, 0, -1.0, spread + ": holds a matrix at (0");
-  finds_number("/windows/covariance", 1, 1e6, "that is not a covariance");  // not symmetric
-  for (const std::string error :
-       {"/windows/standard_error", "/windows/global/noise_variance", "/bank/parameter_standard_error",
-        "/bank/Q_standard_error", "/bank/R_standard_error", "/bank/transition_standard_error",
-        "/bank/transition_weight_standard_error", "/evaluation/bank/free_run_sd"})
-    finds_number(error, 0, -0.5, error + ": holds -0.5 at (0");
-  finds_number("/evaluation/bank/spread_share", 1, 1.5, "/evaluation/bank/spread_share: holds 1.5 at (1");
-  finds([&] { patch_cell(path, "/residual_tests/runs", "level", 2, 1.5); }, "column 'level' holds 1.5 at (2)");
-  finds([&] { patch_cell(path, "/residual_tests/runs", "autocorrelation_band", 1, -0.5); }, "holds -0.5 at (1)");
-  finds_number("/windows/r_squared", 2, 1.5, "/windows/r_squared: holds 1.5");
-  for (const std::string column : {"coverage_95", "too_far", "whiteness_p", "nis_mean"})
-    finds([&] { patch_cell(path, "/evaluation/summary", column, 1, -0.5); }, "holds -0.5 at (1)");
-  finds([&] { patch_cell(path, "/evaluation/diagnostics", "usage", 0, 2.0); }, "column 'usage' holds 2 at (0)");
-  finds([&] { patch_cell(path, "/lag/runs", "lag_standard_error_s", 0, -1.0); }, "holds -1 at (0)");
-}
-
-TEST_F(Robustness, ProbabilitiesOfModesThatDoNotSumToOne) {
-  finds_number("/evaluation/bank/mode_probability", 1, 0.9, "mode_probability: holds probabilities that sum to");
-  finds_number("/evaluation/bank/mode_probability_predicted", 0, 0.9, "holds probabilities that sum to");
-  finds_number("/mixture/responsibilities", 0, 0.999, "responsibilities: holds probabilities that sum to");
-  patch_number(path, "/evaluation/bank/mode_probability", 1, nan);  // unknown
-  EXPECT_THAT(verify_archive(path).problems, ::testing::IsEmpty());
-}
-
-TEST_F(Robustness, CountsOfMoreThanThereIs) {
-  for (const std::string table : {"summary", "horizon", "free_run", "diagnostics", "confusion", "evidence/gains"})
-    finds([&] { patch_cell(path, "/evaluation/" + table, "samples", 0, 40); }, "must lie in 0 .. 39");
-  finds([&] { patch_cell(path, "/residual_tests/runs", "samples", 0, 40); }, "must lie in 0 .. 39");
-  finds_attribute("/mixture", "clustered_windows", 10);
-  finds_attribute("/windows/global", "transitions", 40);
+TEST_F(Robustness, AFindingIsAboutRunsAndModesThatAreThere) {
   finds_attribute("/bank", "learned_transitions", -1);
   finds_number("/windows/transitions", 0, 6, "/windows/transitions: holds 6 at (0), must lie in 0 .. 5");
   finds([&] { patch_number_attribute(path, "/evaluation/evidence", "runs", 4); }, "is about 4 runs, there are 3");
@@ -200,8 +162,8 @@ TEST_F(Robustness, LagsOfResidualTestsAreThoseOfTheirRow) {
 }
 
 TEST_F(Robustness, OnlyVerificationJudgesValues) {
-  patch_number(path, "/evaluation/bank/pit", 3, 2.0);
-  EXPECT_THAT(verify_archive(path).problems, Contains(HasSubstr("/evaluation/bank/pit: holds 2 at (1, 1)")));
+  patch_number(path, "/mixture/covariances", 1, 1e3);
+  EXPECT_THAT(verify_archive(path).problems, Contains(HasSubstr("/mixture/covariances: holds a matrix")));
   EXPECT_NO_THROW(read_archive(path));
   EXPECT_NO_THROW(read_archive(path, Evaluations::in_file));
 }

@@ -62,7 +62,6 @@ Archive long_archive() {
     run.state = Eigen::MatrixXd::Random(1, samples);
     run.input = Eigen::MatrixXd::Random(1, samples);
     run.truth.resize(0, 0);
-    run.weight.resize(0);
   };
   for (std::size_t i = 0; i < 3; ++i) stretch_run(recording.runs[i], i == 1 ? 70'000 : 40'000);
   archive = Archive();

@@ -110,14 +110,14 @@ TEST(Restarts, BadOptionsAreNamed) {
   const auto refused = [&](auto change) {
     SelectionOptions options;
     options.components = {2};
-    SampleDesign design;
-    change(options, design);
-    EXPECT_THROW(select(points, design, options, 1), std::invalid_argument);
+    double samples = 0.0;
+    change(options, samples);
+    EXPECT_THROW(select(points, samples, options, 1), std::invalid_argument);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  refused([&](SelectionOptions& options, SampleDesign&) { options.em.tolerance = nan; });
-  refused([&](SelectionOptions& options, SampleDesign&) { options.em.covariance_floor = 1e300 * 1e300; });
-  refused([&](SelectionOptions& options, SampleDesign&) { options.em.restarts = 0; });
+  refused([&](SelectionOptions& options, double&) { options.em.tolerance = nan; });
+  refused([&](SelectionOptions& options, double&) { options.em.covariance_floor = 1e300 * 1e300; });
+  refused([&](SelectionOptions& options, double&) { options.em.restarts = 0; });
   // A call with invalid arguments must throw. It must not count as a failed candidate.
   GaussianMixture other_features = three_clusters(2.0);
   other_features.means.conservativeResize(1, Eigen::NoChange);
@@ -125,8 +125,8 @@ TEST(Restarts, BadOptionsAreNamed) {
   SelectionOptions three;
   three.components = {3};
   EXPECT_THROW(select(points, {}, three, 1, &other_features), std::invalid_argument);
-  refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = nan; });
-  refused([&](SelectionOptions&, SampleDesign& design) { design.effective_samples = -3.0; });
+  refused([&](SelectionOptions&, double& samples) { samples = nan; });
+  refused([&](SelectionOptions&, double& samples) { samples = -3.0; });
 }
 
 }  // namespace

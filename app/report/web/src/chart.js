@@ -4,7 +4,7 @@ import {layoutOf} from './chart_layout.js';
 import {drawChart} from './chart_panel.js';
 import {readPoints} from './chart_tip.js';
 import {h, legend} from './elements.js';
-import {beforePrint} from './page.js';
+import {drawWhenIdle} from './page.js';
 import {inTurn, whenNear} from './turns.js';
 
 /**
@@ -12,7 +12,7 @@ import {inTurn, whenNear} from './turns.js';
  * it. 'points': symbols; 'line': through the points; 'bars': from zero to y at x; 'cells': a grid with `colours[i][j]`
  * at y[i] and x[j]; 'band': grey between two heights; 'rule': a horizontal line at y or a vertical one at x.
  * @typedef {{kind: string, x?: any, y?: any, colour?: string, size?: number,
- *   symbol?: string, open?: boolean, opacity?: number, edge?: boolean, width?: number, dash?: string, step?: boolean,
+ *   symbol?: string, opacity?: number, edge?: boolean, width?: number, dash?: string, step?: boolean,
  *   name?: string, low?: number, high?: number, colours?: string[][], tip?: (i: number) => string|string[],
  *   pick?: (i: number) => void, which?: any}} Mark
  * `levels`: names at 0, 1, 2, ...; `whole`: ticks at whole numbers; `zero`: from zero on.
@@ -77,7 +77,7 @@ export function figure(label, make, caption) {
     plot.style.minHeight = '200px';
     const ignore = whenNear(plot, () => element.begin());
   });
-  beforePrint(() => {
+  drawWhenIdle(() => {
     element.begin();
     return element.ready;
   }, plot);

@@ -9,24 +9,12 @@ const known = (v) => v !== null && Number.isFinite(v);
 const dashes = {
   dash: '7 5',
   dot: '2 4',
-  dashdot: '8 4 2 4',
-  longdash: '12 5',
-  longdashdot: '12 4 2 4',
 };
 
 // Corners of each symbol, for a half width of 1.
 const corners = {
   square: [[-0.9, -0.9], [0.9, -0.9], [0.9, 0.9], [-0.9, 0.9]],
   diamond: [[0, -1.2], [1.2, 0], [0, 1.2], [-1.2, 0]],
-  'triangle-up': [[0, -1.2], [1.1, 0.8], [-1.1, 0.8]],
-  cross: [
-    [-0.4, -1.2], [0.4, -1.2], [0.4, -0.4], [1.2, -0.4], [1.2, 0.4], [0.4, 0.4], [0.4, 1.2], [-0.4, 1.2], [-0.4, 0.4],
-    [-1.2, 0.4], [-1.2, -0.4], [-0.4, -0.4]
-  ],
-  x: [
-    [-1.1, -0.6], [-0.6, -1.1], [0, -0.5], [0.6, -1.1], [1.1, -0.6], [0.5, 0], [1.1, 0.6], [0.6, 1.1], [0, 0.5],
-    [-0.6, 1.1], [-1.1, 0.6], [-0.5, 0]
-  ],
   star: Array.from(
       {length: 10},
       (_, k) => [0, 1].map((axis) => (k % 2 ? 0.55 : 1.4) * [Math.sin, (a) => -Math.cos(a)][axis](k * Math.PI / 5))),
@@ -47,26 +35,23 @@ function eachPlace({x, y}, to, visit) {
 }
 
 function points(mark, to) {
-  const {size = 4, symbol = 'circle', open, opacity, edge} = mark, colour = shade(mark.colour), list = [];
+  const {size = 4, symbol = 'circle', opacity, edge} = mark, colour = shade(mark.colour), list = [];
   const shape = corners[symbol], r = size / 2;
   eachPlace(mark, to, (px, py) => {
     if (shape) {
       list.push(`M${shape.map(([a, b]) => `${short(px + r * a)} ${short(py + r * b)}`).join('L')}Z`);
-    } else if (open || edge) {
+    } else if (edge) {
       list.push(`M${short(px - r)} ${py}a${r} ${r} 0 1 0 ${size} 0a${r} ${r} 0 1 0 ${- size} 0Z`);
     } else {
       list.push(`M${px} ${py}h0`);  // a line of length 0 with a round cap is drawn as a dot
     }
   });
-  const dot = !shape && !open && !edge;
-  const stroke = dot || open ? colour : edge ? 'var(--ink)' : 'none';
+  const dot = !shape && !edge;
   return s('path', {
     d: list.join(''),
-    fill: dot || open ? 'none' : colour,
-    stroke,
-    'stroke-width': dot ? size :
-        open            ? 2.5 :
-                          1.2,
+    fill: dot ? 'none' : colour,
+    stroke: dot ? colour : edge ? 'var(--ink)' : 'none',
+    'stroke-width': dot ? size : 1.2,
     'stroke-linecap': 'round',
     opacity,
   });

@@ -8,14 +8,6 @@ export function fileName(label, kind) {
   return `${words.slice(0, 60) || 'file'}.${kind}`;
 }
 
-/** The content of a data: address. */
-export function blobOf(address) {
-  const comma = address.indexOf(','), head = address.slice('data:'.length, comma), body = address.slice(comma + 1);
-  if (!head.endsWith(';base64')) return new Blob([decodeURIComponent(body)], {type: head});
-  return new Blob(
-      [Uint8Array.from(atob(body), (letter) => letter.charCodeAt(0))], {type: head.slice(0, -';base64'.length)});
-}
-
 /** Makes the browser save a file. */
 export function save(name, blob) {
   const link = h('a', {href: URL.createObjectURL(blob), download: name, hidden: true});

@@ -1,11 +1,11 @@
-// Panels that show a filter's calibration, for pages of one run and of several runs.
+// Panels that show a filter's calibration.
 
 /** Residual autocorrelation by lag, from one sample on: a panel with a line and points for each of `rows`. */
 export function autocorrelationPanel(rows, band) {
-  const marks = rows.flatMap(({series, name, colour, dash, symbol}) => {
+  const marks = rows.flatMap(({series, name, colour}) => {
     const y = series.slice(1), x = y.map((_, lag) => lag + 1);
     const tip = (i) => `${name}, lag ${x[i]}: ${y[i].toFixed(3)}`;
-    return [{kind: 'line', x, y, colour, dash}, {kind: 'points', x, y, colour, symbol, size: 5, name, tip}];
+    return [{kind: 'line', x, y, colour}, {kind: 'points', x, y, colour, size: 5, name, tip}];
   });
   const grey = band === undefined ? [] : [{kind: 'band', low: -band, high: band}];
   return {x: {title: 'lag [samples]', whole: true}, y: {title: 'autocorrelation'}, marks: [...grey, ...marks]};
@@ -24,14 +24,5 @@ export function pitPanel({counts, band, expected}, colour, title) {
       {kind: 'band', low: band[0], high: band[1]},
       {kind: 'rule', y: expected},
     ],
-  };
-}
-
-/** The same histogram as a density: corners of steps. */
-export function pitSteps({counts, expected}) {
-  const bins = counts.length;
-  return {
-    x: Array.from({length: bins + 1}, (_, i) => i / bins),
-    y: [counts[0], ...counts].map((count) => count / expected),
   };
 }

@@ -1,5 +1,5 @@
-// A figure is drawn shortly before it becomes visible. All others are drawn while the browser is idle, so that printing
-// finds a complete page.
+// A figure is drawn shortly before it becomes visible. All others are drawn while the browser is idle, so that a page
+// is complete when the browser prints it.
 
 const soon_ms = 2000;  // latest start of the drawing, even in a busy browser
 
@@ -22,22 +22,4 @@ export async function finishWhenIdle(tasks) {
     await Promise.resolve(finish()).catch(
         () => null);  // errors are ignored here: the drawing code has already reported them
   }
-  document.documentElement.dataset.finished = 'true';
-}
-
-/**
- * A browser that only prints (chromium --headless --print-to-pdf) prints when the page has loaded. An open document in
- * a frame delays this until the returned function is called.
- */
-export function holdPrinting() {
-  const prints = navigator.userAgent.includes('Headless') && !navigator.webdriver;
-  if (!prints || document.readyState === 'complete') return () => null;
-  const frame = document.createElement('iframe');
-  frame.hidden = true;
-  document.body.append(frame);
-  frame.contentDocument.open();
-  return () => {
-    frame.contentDocument.close();
-    frame.remove();
-  };
 }

@@ -4,7 +4,6 @@ let names = [];
 let ranks = [];
 let hues = [];
 let toldCount = Infinity;
-let groups = [];
 
 /**
  * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used family first, of
@@ -15,18 +14,13 @@ export function nameModes(list, order = [], told = Infinity, families = order.ma
   ranks = [];
   hues = [];
   toldCount = told;
-  groups = [];
   order.forEach((mode, rank) => {
     ranks[mode] = rank;
   });
   families.forEach((family, hue) => family.modes.forEach((mode, turn) => {
     hues[mode] = {hue, turn};
-    groups[mode] = family;
   }));
 }
-
-/** The most used mode of the family of mode k; the family has its colour. */
-export const leadOf = (k) => (groups[k] ? groups[k].modes[0] : k);
 
 /** Number of modes with more use. */
 export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);

@@ -1,37 +1,30 @@
 // Texts and colours for the matched modes of two banks. This file does not draw.
 
 /**
- * Ranks of colours (usedColour) of the modes of each bank. Matched modes have A's rank, which is by use. The other
- * listed modes of a bank follow after A's, by use. Infinity: merged modes.
- * @param {({order: number[], told: number}|null)[]} banks
- * @param {{modes: {first: number, second: number}[]}[]} matches of the second, third, ... with A
+ * Ranks of colours (usedColour) of the modes of both banks, [of A, of B]. Matched modes have A's rank, which is by use.
+ * The other listed modes of B follow after A's, by use. Infinity: merged modes.
+ * @typedef {{order: number[], told: number}} Bank
+ * @param {Bank} a
+ * @param {Bank} b
+ * @param {{modes: {first: number, second: number}[]}} match
  * @returns {number[][]}
  */
-export function matchedRanks(banks, matches) {
-  const byUse = ({order, told}) => {
-    const ranks = [];
-    order.forEach((mode, rank) => {
-      ranks[mode] = rank < told ? rank : Infinity;
-    });
-    return ranks;
-  };
-  const all = banks.map((bank) => (bank ? byUse(bank) : []));
-  matches.forEach(({modes}, i) => {
-    const bank = banks[i + 1];
-    if (!banks[0] || !bank || !modes.length) return;
-    let next = banks[0].told;
-    const partner = new Map(modes.filter(({first}) => first >= 0).map(({first, second}) => [second, first]));
-    bank.order.forEach((mode, rank) => {
-      const first = partner.get(mode);
-      const shared = first === undefined ? Infinity : all[0][first];
-      if (Number.isFinite(shared)) {
-        all[i + 1][mode] = shared;
-      } else {
-        all[i + 1][mode] = rank < bank.told ? next++ : Infinity;
-      }
-    });
+export function matchedRanks(a, b, {modes}) {
+  const ofA = [], ofB = [];
+  a.order.forEach((mode, rank) => {
+    ofA[mode] = rank < a.told ? rank : Infinity;
   });
-  return all;
+  let next = a.told;
+  const partner = new Map(modes.filter(({first}) => first >= 0).map(({first, second}) => [second, first]));
+  b.order.forEach((mode, rank) => {
+    const first = partner.get(mode), shared = first === undefined ? Infinity : ofA[first];
+    if (Number.isFinite(shared)) {
+      ofB[mode] = shared;
+    } else {
+      ofB[mode] = rank < b.told ? next++ : Infinity;
+    }
+  });
+  return [ofA, ofB];
 }
 
 // [differing, agreeing] pairs of a match. The pair with the largest distance is first; unmatched modes are last.
@@ -42,8 +35,8 @@ export function sortedPairs({modes}) {
 }
 
 // The parameters in which the modes of a pair differ most: "B (+5.2), A (-3.1)".
-export function differingWords({first, second, agree, z}, names, letter) {
-  if (first < 0) return `only in ${letter}`;
+export function differingWords({first, second, agree, z}, names) {
+  if (first < 0) return 'only in B';
   if (second < 0) return 'only in A';
   if (agree) return 'agree within their errors';
   if (!z.length) return '–';  // the modes belong to different models

@@ -1,6 +1,6 @@
-// The parts that every page has: head, contents, theme, printing.
+// The parts that every page has: head, contents, theme.
 import {h} from './elements.js';
-import {finishWhenIdle, holdPrinting} from './finishing.js';
+import {finishWhenIdle} from './finishing.js';
 
 // A section of the page, with its entry in the contents.
 export function section(id, title, ...content) {
@@ -30,30 +30,14 @@ const markTheme = () => {
 };
 const announce = () => {
   markTheme();
-  return Promise.all(listeners.map((listener) => listener()));
+  listeners.forEach((listener) => listener());
 };
 
-// Tasks to complete before the page is printed, such as drawing figures that are not visible.
+// Figures to draw while the browser is idle.
 const unfinished = [];
 // `place`: the element that contains the drawing.
-export function beforePrint(finish, place = null) {
+export function drawWhenIdle(finish, place = null) {
   unfinished.push({finish, place});
-}
-
-async function printPage() {
-  const root = document.documentElement, theme = root.dataset.theme;
-  root.dataset.theme = 'light';
-  root.dataset.printing = 'true';
-  await Promise.all(unfinished.map(({finish}) => finish()));
-  await announce();
-  window.print();
-  delete root.dataset.printing;
-  if (theme) {
-    root.dataset.theme = theme;
-  } else {
-    delete root.dataset.theme;
-  }
-  await announce();
 }
 
 function themeSwitch() {
@@ -78,8 +62,7 @@ function themeSwitch() {
 export function head(title, subtitle) {
   const name =
       h('div', {style: 'min-width:0'}, h('h1', {}, title), subtitle ? h('div', {class: 'soft'}, subtitle) : null);
-  const print = h('button', {type: 'button', id: 'print', onclick: printPage}, 'Print');
-  document.getElementById('top').append(name, h('div', {class: 'buttons'}, print, ' ', themeSwitch()));
+  document.getElementById('top').append(name, themeSwitch());
   markTheme();
 }
 
@@ -98,7 +81,6 @@ const painted = () => new Promise((resolve) => {
 // Runs the script of a page. `first` is drawn and visible before the other data are read. Errors are shown and then
 // thrown again, so that tests detect them.
 export async function draw(body, first = () => undefined) {
-  const release = holdPrinting();
   try {
     first();
     await painted();
@@ -106,9 +88,8 @@ export async function draw(body, first = () => undefined) {
     await parsed();
     await body();
     document.documentElement.dataset.ready = 'true';
-    finishWhenIdle(unfinished).then(release);
+    finishWhenIdle(unfinished);
   } catch (error) {
-    release();
     const text = `This page could not be drawn: ${error.message}`;
     document.getElementById('main').append(h('p', {class: 'failure note bad', role: 'alert'}, text));
     throw error;

@@ -1,6 +1,5 @@
 // A run over time: data, prediction, inputs, modes, innovations and NIS on one time axis. A link restores the view.
 import {check, controls, copyButton, h} from './elements.js';
-import {timeJumps} from './time_jumps.js';
 import {keyHelp} from './time_keys.js';
 import {innovationRow, inputRows, nisRow, probabilityRow, stateRow} from './time_rows.js';
 import {timePlot} from './timeview.js';
@@ -23,7 +22,7 @@ function dataRows(runs, state, {layer}, shown) {
     ...(shown.inputs ? inputRows(runs) : []),
     ...(shown.modes && filter && filter.probability ? [probabilityRow(layer.of)] : []),
     ...(shown.innovations && filter ? runs.states.map((_, i) => innovationRow(runs, i, layer.of)) : []),
-    ...(shown.nis && filter ? [nisRow(runs, [layer])] : []),
+    ...(shown.nis && filter ? [nisRow(runs, layer.of)] : []),
   ];
 }
 
@@ -63,19 +62,18 @@ function followLink(state, filters, options) {
  */
 export function dataPlot(runs, state, filters, options) {
   const shown = {inputs: true, modes: true, innovations: true, nis: true};
-  const jumps = timeJumps(state, options.layer.of), link = followLink(state, filters, options);
+  const link = followLink(state, filters, options);
   const plot = timePlot(
       state, 'One run over time: data, prediction, inputs, modes, innovations and NIS',
-      () => dataRows(runs, state, options, shown), runs.note, filters.length ? jumps.keys : []);
+      () => dataRows(runs, state, options, shown), runs.note);
   const part = (name) => check(parts[name], true, (on) => {
     shown[name] = on;
     state.changed();
   });
   const there = Object.keys(parts).filter((name) => (name === 'inputs' ? runs.inputs.length : filters.length));
   return [
-    controls(filters.length ? jumps.buttons : null, there.map(part), copyButton('Copy a link to this view', link)),
-    filters.length ? jumps.said : null,
+    controls(there.map(part), copyButton('Copy a link to this view', link)),
     plot,
-    h('div', {class: 'keys'}, keyHelp(filters.length ? jumps.keys : [])),
+    h('div', {class: 'keys'}, keyHelp()),
   ];
 }

@@ -49,7 +49,7 @@ const verdictColumns = [
   number('in 99 %', 'coverage_99'),
   number('too far', 'too_far'),
   number('too close', 'too_close'),
-  number('mean NIS [true filter]', 'nis_mean'),
+  number('mean NIS', 'nis_mean'),
 ];
 
 const horizonColumns = (filter) =>

@@ -7,9 +7,7 @@ import {table} from './table.js';
 
 const panelKinds = [
   ['bic', 'BIC'],
-  ['icl', 'ICL'],
   ['aic', 'AIC'],
-  ['heldout', 'held out [nats]'],
   ['agreeing', 'restarts that agree [%]'],
 ];
 const shapes = [['full', palette.modes[0], undefined, 'circle'], ['diagonal', palette.modes[1], 'dot', 'square']];
@@ -44,7 +42,7 @@ function panels(candidates) {
   const drawing = {panels: list.map(panelOf), height: 150, wide: 330, legend: keys.length > 1 ? keys : null};
   return figure(
       'Criteria over the number of components; the table below has the same numbers', () => drawing,
-      `Lower is better for BIC, ICL and AIC, higher for held out.${
+      `Lower is better.${
           chosen ? ` Dashed: the chosen K = ${chosen.components}.` : ''}`);
 }
 
@@ -60,10 +58,8 @@ const columns = [
   number('q', 'parameters'),
   number('N_eff', 'effective_samples'),
   number('BIC', 'bic'),
-  number('ICL', 'icl'),
   number('AIC', 'aic'),
   number('naive BIC', 'bic_naive'),
-  number('held out', 'heldout'),
   number('Iterations', 'iterations'),
   word('Converged', 'converged'),
   number('Restarts agree', 'agreeing'),

@@ -1,25 +1,9 @@
 // The section on the transitions between the modes of a bank, and on the stays in a mode.
 import {details, h, note} from './elements.js';
 import {roleNames} from './filters.js';
-import {transitionGraph} from './graph.js';
-import {modeColour, palette} from './look.js';
+import {modeColour} from './look.js';
 import {modeCell, modeTitle} from './mode_names.js';
-import {familiesOf, othersName} from './modes.js';
 import {table} from './table.js';
-
-// The families that have their own row, and all other families as one node: {title, short, colour, use}.
-function nodesOf(bank) {
-  const {told, others} = familiesOf(bank);
-  const nodes = told.map((row) => ({
-                           title: row.title,
-                           short: row.modes.length > 1 ? `${row.lead}…` : String(row.lead),
-                           colour: modeColour(row.lead),
-                           use: row.use.v,
-                         }));
-  if (!others.length) return nodes;
-  const use = others.reduce((sum, row) => sum + row.use.v, 0);
-  return [...nodes, {title: othersName(others.length), short: '…', colour: palette.unclustered, use}];
-}
 
 function stayTable(bank) {
   return table(
@@ -39,9 +23,9 @@ function transitionTable(bank) {
   return table(columns, order, {caption: 'Transition probabilities per sample'});
 }
 
-// A note above the drawing. A switch that is rare at the mean of states and inputs may be frequent elsewhere.
+// A note above the table. A switch that is rare at the mean of states and inputs may be frequent elsewhere.
 const movedSwitches = () => note(
-    'These transitions depend on state and input. Graph and matrix are for their training mean, and ' +
+    'These transitions depend on state and input. The matrix is for their training mean, and ' +
     'each further unit adds the weights in the table to the log odds of a mode. Without an error, the data show only ' +
     'that a weight is large: a hard border.');
 
@@ -55,16 +39,10 @@ function switchWeights(weights) {
 
 export function switching(bank) {
   if (bank.modes.length < 2) return note('There is one mode, so there are no switches.');
-  const nodes = nodesOf(bank), stays = bank.modes.some((row) => row.stay_seen);
-  const folded = bank.folded.length < bank.modes.length;
   return [
     h('h3', {}, 'How modes follow each other'),
-    folded ? h('p', {class: 'caption'},
-               'Modes of one family are one node, and so are all that are hardly used; the matrix has each mode.') :
-             null,
     bank.switch_weights ? movedSwitches() : null,
-    h('div', {class: 'pair'}, h('div', {}, transitionGraph(bank.folded, nodes)),
-      stays ? h('div', {}, h('h3', {}, 'How long they last'), stayTable(bank)) : null),
+    bank.modes.some((row) => row.stay_seen) ? stayTable(bank) : null,
     bank.switch_weights ? switchWeights(bank.switch_weights) : null,
     details('The transition matrix in numbers', transitionTable(bank)),
   ];

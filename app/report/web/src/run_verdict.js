@@ -1,9 +1,8 @@
-// The first screen: finding, reliability of the band, next step and a picture. Words and numbers are those of the
+// The first screen: finding and reliability of the band. Words and numbers are those of the
 // program's first screen (screen_facts.hpp).
 import {h, value} from './elements.js';
 import {modeColour} from './look.js';
 import {section} from './page.js';
-import {drawPicture} from './run_picture.js';
 import {cellOf, headingOf, scrolling} from './table.js';
 import {withTips} from './tips.js';
 
@@ -55,16 +54,13 @@ export function drawVerdict(verdict) {
       h('div', {id: 'said', class: `verdict ${sort}`}, h('p', {class: 'answer'}, capital(verdict.headline), '.'),
         h('p', {}, withCode(verdict.text, withTips)),
         (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
-  const next =
-      verdict.next ? h('p', {id: 'next', class: 'note'}, h('strong', {}, 'Next: '), withCode(verdict.next)) : null;
   const use =
       verdict.use ? h('p', {id: 'use', class: 'note'}, withCode(capital(verdict.use).replace(/ \+- /g, ' ± '))) : null;
   const warning = verdict.warning ? h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '),
                                       withCode(verdict.warning.replace(/ \+- /g, ' ± '))) :
                                     null;
-  const element = section(
+  section(
       'verdict', 'Verdict',
-      h('div', {class: 'screen'}, said, cardList('coverage', of(true)), next, use, h('div', {id: 'picture'}),
+      h('div', {class: 'screen'}, said, cardList('coverage', of(true)), use,
         cardList('scores', of(false)), verdict.modes ? modesTable(verdict.modes) : null, warning));
-  if (verdict.picture) drawPicture(element.querySelector('#picture'), verdict);
 }

@@ -5,13 +5,11 @@ export const mean = (values) => values.reduce((a, b) => a + b, 0) / values.lengt
 
 const enough = 20000;  // number of values that is enough to estimate the quantiles of a list
 
-// The range of nearly all values in the lists. Windows that determine the parameters badly give outliers. These are
+// The range of nearly all values. Windows that determine the parameters badly give outliers. These are
 // excluded, because they would hide the other windows.
-export function usualRange(...lists) {
-  const some = lists.flatMap((list) => {
-    const step = Math.max(1, Math.floor(list.length / enough));
-    return Array.from(list).filter((v, i) => i % step === 0 && Number.isFinite(v));
-  });
+export function usualRange(values) {
+  const step = Math.max(1, Math.floor(values.length / enough));
+  const some = Array.from(values).filter((v, i) => i % step === 0 && Number.isFinite(v));
   if (!some.length) return [-1, 1];
   some.sort((a, b) => a - b);
   const at = (share) => some[Math.round(share * (some.length - 1))];
@@ -23,13 +21,4 @@ export function usualRange(...lists) {
 export function lossOf(goal, score) {
   if (!goal || goal.kind === 'higher') return -score;
   return goal.kind === 'lower' ? score : Math.abs(score - goal.nominal);
-}
-
-// The points {x, loss} for which no other point is better in both numbers.
-export function paretoFront(points) {
-  const front = [];
-  for (const point of [...points].sort((a, b) => a.x - b.x || a.loss - b.loss)) {
-    if (!front.length || point.loss < front[front.length - 1].loss) front.push(point);
-  }
-  return front;
 }

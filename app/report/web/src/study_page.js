@@ -5,7 +5,6 @@ import {pageData} from './page_data.js';
 import {columnTitle} from './score_names.js';
 import {drawBetter} from './study_better.js';
 import {drawEffects} from './study_effects.js';
-import {drawPareto} from './study_pareto.js';
 import {drawStudyTable} from './study_table.js';
 import {table} from './table.js';
 
@@ -92,8 +91,6 @@ draw(async () => {
   const runs = section('runs', 'Runs');
   drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
   runs.append(detail);
-  const context = {study, shown, showRun};
-  drawEffects(context);
-  drawPareto(context);
+  drawEffects({study, shown, showRun});
   drawOrigin(study, data.origin);
 });

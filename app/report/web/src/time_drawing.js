@@ -124,23 +124,14 @@ function drawShares(pen, traces, toX, toY) {
   }
 }
 
-const corners = {
-  diamond: [[0, -1], [1, 0], [0, 1], [-1, 0]],
-};
-
 function drawDots(pen, trace, toX, toY) {
-  const {x, y, size = 2, symbol} = trace, shape = corners[symbol];
+  const {x, y, size = 2, symbol} = trace;
   const path = (context) => {
     for (let i = 0; i < y.length; ++i) {
       if (!known(y[i])) continue;
       const px = toX(x[i]), py = toY(y[i]);
-      if (shape) {
-        shape.forEach(([a, b], k) => (k ? context.lineTo : context.moveTo).call(context, px + size * a, py + size * b));
-        context.closePath();
-      } else {
-        context.moveTo(px + size, py);
-        context.arc(px, py, size, 0, 2 * Math.PI);
-      }
+      context.moveTo(px + size, py);
+      context.arc(px, py, size, 0, 2 * Math.PI);
     }
   };
   if (symbol === 'ring') {

@@ -44,25 +44,23 @@ const actions = [
   [['Escape'], 'Esc', 'take the crosshair away', (state) => state.point(null)],
 ];
 
-/** Handles these keys and those of `jumps`: {key, name, does, act}. */
-export function listenToKeys(plot, state, jumps = []) {
+/** Handles these keys. */
+export function listenToKeys(plot, state) {
   plot.addEventListener('keydown', (event) => {
     if (event.target !== plot || event.ctrlKey || event.altKey || event.metaKey) return;
     const found = actions.find(([keys]) => keys.includes(event.key));
-    const jump = jumps.find(({key}) => key === event.key);
-    if (!found && !jump) return;
+    if (!found) return;
     event.preventDefault();
-    const act = found ? found[3] : jump.act;
-    act(state, event);
+    found[3](state, event);
   });
 }
 
-export function keyHelp(jumps = []) {
+export function keyHelp() {
   const pointer = [
     ['drag', 'show a part of the time; with Shift, or by a finger: move'],
     ['wheel', 'zoom, once the plot was clicked, or with Ctrl; with Shift: move'],
     ['double click', 'the whole run'],
   ];
   const keys = actions.map(([, name, does]) => [name, does]);
-  return details('Pointer and keys', facts([...pointer, ...keys, ...jumps.map(({name, does}) => [name, does])]));
+  return details('Pointer and keys', facts([...pointer, ...keys]));
 }

@@ -3,7 +3,7 @@ import {downloads} from './downloads.js';
 import {h, s, swatch} from './elements.js';
 import {canvasLook, coloured, groundNow} from './look.js';
 import {rangeText, secondsText} from './number_text.js';
-import {beforePrint, onTheme} from './page.js';
+import {drawWhenIdle, onTheme} from './page.js';
 import {canvasPen, font, svgPen} from './pens.js';
 import {view} from './signals.js';
 import {margins, timeScale} from './time_axes.js';
@@ -201,8 +201,8 @@ function uniqueNames(traces) {
   return [...seen.values()].slice(0, 8);
 }
 
-// `rows()`: the rows of time_rows.js, from top to bottom. `jumps`: more keys (time_keys.js).
-export function timePlot(state, label, rows, caption, jumps = []) {
+// `rows()`: the rows of time_rows.js, from top to bottom.
+export function timePlot(state, label, rows, caption) {
   const it = new TimePlot(state, label, rows), {plot} = it;
   const files = downloads(label, {svg: () => it.svg(), png: () => it.png()});
   const element =
@@ -233,9 +233,9 @@ export function timePlot(state, label, rows, caption, jumps = []) {
     time: (x) => it.scale().from(x - plot.getBoundingClientRect().left),
     choose: (span) => it.choose(span),
   });
-  listenToKeys(plot, state, jumps);
+  listenToKeys(plot, state);
   new ResizeObserver(() => element.refresh()).observe(plot);
-  beforePrint(() => {
+  drawWhenIdle(() => {
     element.begin();
     return element.ready;
   });

@@ -1,6 +1,5 @@
 // Rows of time plots: states with predictions, inputs, mode probabilities, innovations, NIS. A layer draws one filter:
-// {of: run => its filter or null, prefix: '', band, line: colours, nis: colour, stroke: {dash}, symbol}. A page of one
-// run has one layer. A page that compares runs has several layers.
+// {of: run => its filter or null, prefix: '', band, opacity, line}. Free runs of several filters have several layers.
 //
 // A row is {title, height, draw: async ({run, clock, shown, range}) => traces, read: async (run, k) => entries, range,
 // log, levels}. `read` returns the values of the signals at sample k. For k = -1 it returns entries of a legend.
@@ -43,7 +42,6 @@ async function predictionTraces(layer, filter, i, {clock, shown}) {
     lowest: filter.lower[i],
     highest: filter.upper[i],
   };
-  const colour = layer.line, dash = (layer.stroke || {}).dash === 'dash' ? 'dash' : undefined;
   return [
     {
       ...(await band(edges, clock, shown)),
@@ -54,8 +52,7 @@ async function predictionTraces(layer, filter, i, {clock, shown}) {
     {
       ...(await line(filter.prediction[i], clock, shown)),
       kind: 'line',
-      colour,
-      dash,
+      colour: layer.line,
       width: 1.4,
       name: `${layer.prefix}predicted`
     },
@@ -112,10 +109,10 @@ function stateEntries(layers, i, unit, run, k) {
 
 // Measured state i with the band and prediction of each layer, and the true state. Outliers are drawn only if there is
 // a single layer.
-export function stateRow(runs, i, layers, height = 230) {
+export function stateRow(runs, i, layers) {
   return {
     title: titleOf(runs.states[i]),
-    height,
+    height: 230,
     draw: (view) => stateTraces(layers, i, view),
     read: (run, k) => stateEntries(layers, i, runs.states[i].unit, run, k),
   };
@@ -141,16 +138,16 @@ export function inputRows(runs) {
 }
 
 // The most probable modes at sample k, sorted by probability.
-async function modeEntries(filter, k, colourOf) {
+async function modeEntries(filter, k) {
   const byUse = filter.probability.map((_, mode) => mode).sort((a, b) => rankOf(a) - rankOf(b));
   const shares = await Promise.all(
-      filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: colourOf(mode)})));
+      filter.probability.map((signal, mode) => told(signal, k, {name: modeTitle(mode), colour: modeColour(mode)})));
   if (k < 0) return shares.length <= 2 * told_modes ? byUse.map((mode) => shares[mode]) : [];
   return shares.filter(({value}) => value.low > 0.005).sort((a, b) => b.value.low - a.value.low).slice(0, told_modes);
 }
 
-// `of`: run => the filter. Pages with several filters pass another title and other colours.
-export function probabilityRow(of, title = 'probability of the modes', colourOf = modeColour) {
+// `of`: run => the filter.
+export function probabilityRow(of) {
   const draw = ({run, clock, shown}) => {
     const filter = of(run);
     if (!filter || !filter.probability) return [];
@@ -158,14 +155,14 @@ export function probabilityRow(of, title = 'probability of the modes', colourOf 
     const order = filter.probability.map((_, k) => k).sort((a, b) => rankOf(a) - rankOf(b));
     return Promise.all(order.map(async (k) => {
       const curve = await share(filter.probability[k], clock, shown);
-      return {...curve, kind: 'shares', step: curve.per === 1, colour: colourOf(k), name: modeTitle(k)};
+      return {...curve, kind: 'shares', step: curve.per === 1, colour: modeColour(k), name: modeTitle(k)};
     }));
   };
   const read = (run, k) => {
     const filter = of(run);
-    return filter && filter.probability ? modeEntries(filter, k, colourOf) : [];
+    return filter && filter.probability ? modeEntries(filter, k) : [];
   };
-  return {title, height: 110, range: [0, 1], draw, read};
+  return {title: 'probability of the modes', height: 110, range: [0, 1], draw, read};
 }
 
 export function innovationRow(runs, i, of) {
@@ -190,23 +187,21 @@ export function innovationRow(runs, i, of) {
   return {title: `innovation of ${titleOf(runs.states[i])}`, height: 130, draw, read};
 }
 
-async function nisTrace(layer, filter, {clock, shown}) {
-  const curve = await line(filter.nis, clock, shown), dots = curve.per === 1 && curve.y.length < few_nis;
-  const look = {colour: layer.nis || INK, name: `${layer.prefix}NIS`};
-  if (dots) return {...curve, ...look, kind: 'dots', size: 1.8, symbol: layer.symbol};
+async function nisTrace(filter, {clock, shown}) {
+  const curve = await line(filter.nis, clock, shown), look = {colour: INK, name: 'NIS'};
+  if (curve.per === 1 && curve.y.length < few_nis) return {...curve, ...look, kind: 'dots', size: 1.8};
   return {...curve, ...look, kind: 'line', width: 0.8};
 }
 
-export function nisRow(runs, layers) {
-  const present = (run) => layers.map((layer) => [layer, layer.of(run)]).filter(([, filter]) => filter);
+// `of`: run => the filter.
+export function nisRow(runs, of) {
   return {
     title: 'normalised innovation squared (NIS)',
     height: 140,
     log: true,
     range: [1e-4, 300],
-    draw: (view) => Promise.all(present(view.run).map(([layer, filter]) => nisTrace(layer, filter, view))),
+    draw: async (view) => (of(view.run) ? [await nisTrace(of(view.run), view)] : []),
     levels: () => runs.nis_bounds.map((height) => ({height, colour: palette.outlier})),
-    read: (run, k) => Promise.all(present(run).map(
-        ([layer, filter]) => told(filter.nis, k, {name: `${layer.prefix}NIS`, colour: layer.nis || INK}))),
+    read: async (run, k) => (of(run) ? [await told(of(run).nis, k, {name: 'NIS', colour: INK})] : []),
   };
 }

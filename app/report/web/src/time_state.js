@@ -2,8 +2,6 @@
 import {clock} from './signals.js';
 
 const fewest_samples = 4;  // smallest number of visible samples
-const around_samples =
-    200;  // after a jump from the view of the whole run, the view shows this number of samples on each side
 
 /**
  * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, a field or the link, which shows the\n
@@ -89,12 +87,5 @@ export class TimeState {
     const clockOf = await this.clock();
     this.at = t === null ? null : clockOf.at(clockOf.near(t));
     this.pointed();
-  }
-  // Moves the crosshair and the middle of the view to time t.
-  async jump(t) {
-    const [start, end] = this.whole(), period = (end - start) / Math.max(1, this.current.time.samples);
-    const half = this.range ? (this.range[1] - this.range[0]) / 2 : around_samples * period;
-    await this.point(t);
-    return this.zoom([t - half, t + half]);
   }
 }

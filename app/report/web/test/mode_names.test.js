@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {hueOf, isOther, leadOf, modeCell, modeTitle, nameModes, rankOf} from '../src/mode_names.js';
+import {hueOf, isOther, modeCell, modeTitle, nameModes, rankOf} from '../src/mode_names.js';
 
 test('a mode without a name is its number', () => {
   assert.deepEqual([modeCell(0), modeTitle(3)], ['0', 'mode 3']);
@@ -25,7 +25,6 @@ test('modes of one family share a hue, the most used family has the first', () =
   nameModes(['ice', 'grip', 'ice', '', ''], [1, 2, 0, 4, 3], 5, families);
   assert.deepEqual([1, 2, 0, 4, 3].map((k) => hueOf(k).hue), [0, 1, 1, 2, 3]);
   assert.deepEqual([1, 2, 0, 4, 3].map((k) => hueOf(k).turn), [0, 0, 1, 0, 0]);
-  assert.deepEqual([0, 1, 2, 3, 4].map(leadOf), [2, 1, 2, 3, 4]);
   nameModes([]);
   assert.deepEqual(hueOf(3), {hue: 3, turn: 0});
 });

@@ -90,6 +90,8 @@ struct BankDescription {
   std::ptrdiff_t input_lags = 1;                        ///< number of input samples that act on one transition
   InputDelays input_delay = 1;                          ///< number of samples from each input to its first effect
   bool intercept = false;                               ///< whether c is part of theta
+  std::vector<double> centre;                           ///< measured states, then inputs: the point about which theta
+                                                        ///< is taken; empty: zero. A, B and c are not changed
   NoiseMemory noise_memory;                             ///< used by filters with adaptive noise
   NoiseByState noise_by_state;                          ///< empty: constant
   CoefficientDrift drift;                               ///< empty: none

@@ -94,11 +94,11 @@ void VectorGradient::skip(const Vector& v) {
   remember({Kind::skip}, v.data(), none.data());
 }
 
-void VectorGradient::step(const Vector& v, const Vector& y, double weight) {
+void VectorGradient::step(const Vector& v, const Vector& y) {
   if (missing_entries(y) == n_y_) return skip(v);
   filter_.predict(v);
   filter_.update(y);
-  remember({Kind::step, weight, 1.0, 0.0, filter_.last_.share, filter_.last_.square}, v.data(), y.data());
+  remember({Kind::step, 1.0, 1.0, 0.0, filter_.last_.share, filter_.last_.square}, v.data(), y.data());
 }
 
 BankGradient VectorGradient::go_back() {

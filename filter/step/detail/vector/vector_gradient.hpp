@@ -22,9 +22,8 @@ class VectorGradient {
   void reserve(Eigen::Index samples);
   void start(const Vector& y);
   void skip(const Vector& v);
-  /// `weight`: weight of the step's log density.
-  void step(const Vector& v, const Vector& y, double weight);
-  /// Gradient of the sum of all steps' weighted log densities. Call once.
+  void step(const Vector& v, const Vector& y);
+  /// Gradient of the sum of all steps' log densities. Call once.
   BankGradient go_back();
 
  private:
@@ -32,7 +31,7 @@ class VectorGradient {
   /// The step to one moment, and the noise scale after the step.
   struct Moment {
     Kind kind;
-    double weight = 0.0;
+    double weight = 0.0;  ///< 1 for a measurement
     double noise_scale = 1.0, noise_samples = 0.0;
     double share = 0.0, square = 0.0;  ///< from UpdateResult
   };

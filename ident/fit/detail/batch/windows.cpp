@@ -9,11 +9,11 @@ namespace modebank {
 std::unique_ptr<BatchWindows> BatchWindows::make(const LinearWindows& windows, Index count,
                                                  const ParameterPrior* prior) {
   const FitOptions& options = windows.options();
-  const bool possible = BatchSolver::handles(windows.structure(), options.length) && !windows.recording().weighted();
+  const bool possible = BatchSolver::handles(windows.structure(), options.length);
   if (options.solver == WindowSolver::batch && !possible)
     throw ConfigurationError("solver = batch fits linear models of one state with at most " +
                              std::to_string(batch::max_regressors) +
-                             " regressors, fewer than the window's length, without sample weights; use auto or ceres");
+                             " regressors, fewer than the window's length; use auto or ceres");
   const bool wanted = options.solver == WindowSolver::batch ||
                       (options.solver == WindowSolver::automatic && count > most_ceres_windows);
   return possible && wanted ? std::unique_ptr<BatchWindows>(new BatchWindows(windows, prior)) : nullptr;

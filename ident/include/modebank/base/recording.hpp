@@ -14,7 +14,6 @@ struct RecordedRun {
   std::vector<double> time_s;  ///< N sample times, strictly increasing
   Matrix state;                ///< n x N, measured state; missing values are NaN
   Matrix input;                ///< m x N
-  std::vector<double> weight;  ///< N or empty (all one): weight of the transition that ends in sample k, >= 0
 };
 
 /// All runs of one study object. Each run has the same n states and m inputs.

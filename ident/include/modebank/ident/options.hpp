@@ -70,6 +70,8 @@ struct FitOptions {
   std::vector<double> prior_sd;   ///< p standard deviations; a single value holds for all parameters; if empty, 3 x the
                                   ///< standard deviation over full-rank fits
   bool intercept = false;         ///< whether linear models have a constant term c
+  std::vector<double> centre;     ///< n states, then m inputs: with an intercept, theta is taken about this point;
+                                  ///< empty: zero. Learning takes the means of the training runs
   CovarianceKind covariance = CovarianceKind::model;  ///< reported covariance of theta
   int max_iterations = 100;                           ///< iteration limit of the solver
   WindowSolver solver = WindowSolver::automatic;      ///< solver of the window fits

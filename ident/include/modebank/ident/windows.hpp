@@ -29,7 +29,7 @@ struct Windows {
 /// The names that FitOptions::model accepts: linear, varx and modebank's motion models.
 std::vector<std::string> model_names();
 
-/// Cuts and fits every window of the training runs, on all cores. The results equal those of `modebank identify` for
+/// Cuts and fits every window of the training runs, on all cores. The results equal those of `modebank run` for
 /// any number of threads. Throws std::invalid_argument for an option out of range ("length = 0 is out of range: at
 /// least 1") and for runs whose sizes do not fit. Throws DataError (modebank/base/error.hpp) if no run is long enough
 /// for a window.

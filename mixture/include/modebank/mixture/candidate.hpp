@@ -17,8 +17,8 @@ struct EnumNames<CandidateStatus> {
   static constexpr Names<3> values{"fitted", "too_few_points", "failed"};
 };
 
-/// One candidate number of components with its criteria. Lower criteria are better (the opposite of mclust); a higher
-/// `heldout` is better. A candidate that was not fitted has log-likelihood minus infinity and criteria plus infinity.
+/// One candidate number of components with its criteria. Lower criteria are better (the opposite of mclust). A
+/// candidate that was not fitted has log-likelihood minus infinity and criteria plus infinity.
 struct Candidate {
   std::ptrdiff_t components = 0;                     ///< K, number of components
   CovarianceType covariance = CovarianceType::full;  ///< shape of the components' covariances
@@ -28,21 +28,15 @@ struct Candidate {
   double effective_samples = 0.0;                    ///< N_eff
   double bic = 0.0;                                  ///< BIC (Schwarz 1978), with N_eff
   double aic = 0.0;                                  ///< Akaike 1974
-  double icl = 0.0;                                  ///< ICL (Biernacki, Celeux & Govaert 2000)
-  double heldout = 0.0;       ///< mean log density per point of left-out runs; NaN if it was not computed
-  int iterations = 0;         ///< iterations of the restart that was kept
-  bool converged = false;     ///< whether EM converged within the iteration limit
+  int iterations = 0;                                ///< iterations of the restart that was kept
+  bool converged = false;                            ///< whether EM converged within the iteration limit
   int agreeing_restarts = 0;  ///< number of restarts that reached the best likelihood by themselves, without crossing
   bool selected = false;      ///< whether this candidate is the chosen one
   double bic_naive = std::numeric_limits<double>::quiet_NaN();  ///< BIC computed as if the points were independent
   int restarts = 0;                                             ///< number of independent random starts
   bool floor_active = false;  ///< whether the covariance floor acts on any component: a cluster without extent
   CandidateStatus status = CandidateStatus::fitted;  ///< whether the candidate could be fitted
-
-  /// Standard error of the difference between this `heldout` and that of the selected candidate; NaN if it is unknown.
-  double heldout_error = std::numeric_limits<double>::quiet_NaN();
-  std::string failed;  ///< reason why the candidate could not be fitted or has no held-out score; empty without a
-                       ///< failure
+  std::string failed;  ///< reason why the candidate could not be fitted; empty without a failure
 };
 
 }  // namespace modebank

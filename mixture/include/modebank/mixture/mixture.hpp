@@ -10,12 +10,11 @@
 
 namespace modebank::mixture {
 
-/// N points of F features for clustering, with their weights, errors and runs.
+/// N points of F features for clustering, with their weights and errors.
 struct Points {
-  Matrix values;                ///< F x N, finite, one point per column, the layout of ident::Windows::theta
-  std::vector<double> weights;  ///< N, nonnegative; if empty, all weights are one
-  Matrix errors;                ///< F*F x N, each column the covariance of that point's error; empty without errors
-  std::vector<std::ptrdiff_t> runs;  ///< N, run of each point; held-out scores leave out whole runs; may be empty
+  Matrix values;                   ///< F x N, finite, one point per column, the layout of ident::Windows::theta
+  std::vector<double> weights;     ///< N, nonnegative; if empty, all weights are one
+  Matrix errors;                   ///< F*F x N, each column the covariance of that point's error; empty without errors
   double effective_samples = 0.0;  ///< effective number of independent samples of the points; 0 if all are independent.
                                    ///< For overlapping windows, which share samples, it is N step / length
   std::vector<double> typical_error = {};  ///< F, standard deviation of a typical point's error; empty or 0 if unknown
@@ -38,7 +37,7 @@ struct Clusters {
   Matrix responsibilities;            ///< K x N, posterior probability of each component at each point
 };
 
-/// Fits every candidate number of components on all cores and keeps the one with the best criterion. The result is the
+/// Fits every candidate number of components on all cores and keeps the one with the lowest BIC. The result is the
 /// same for any number of threads. Throws std::invalid_argument for an option out of range, sizes that do not fit or
 /// invalid numbers. Throws DataError (modebank/base/error.hpp) if no candidate can be fitted to the points.
 Clusters select(const Points& points, const SelectionOptions& options = {}, std::uint64_t seed = 1);

@@ -34,23 +34,11 @@ struct EmOptions {
   bool noise_component = false;  ///< whether to add a uniform component over the points' bounding box
 };
 
-/// Criterion that chooses the number of components: an information criterion, or the log density of left-out runs.
-/// bic_naive is BIC computed as if all points were independent.
-enum class Criterion { bic, icl, heldout, bic_naive };
-
-template <>
-struct EnumNames<Criterion> {
-  static constexpr Names<4> values{"bic", "icl", "heldout", "bic_naive"};
-};
-
-/// How candidates are fitted and how the number of components is chosen. A held-out score needs several more fits per
-/// candidate. It is computed if it is the criterion, or for at most 20,000 points of known runs. Defaults are the
-/// recommended method.
+/// How candidates are fitted; BIC chooses the number of components. Defaults are the recommended method.
 struct SelectionOptions {
   /// Candidate numbers of components, each at least 1.
   std::vector<std::ptrdiff_t> components{1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12};
-  Criterion criterion = Criterion::bic;  ///< criterion that chooses the number of components
-  EmOptions em;                          ///< how each candidate is fitted
+  EmOptions em;  ///< how each candidate is fitted
 };
 
 /// Which numbers of a window are clustered. `parameters`: its parameters. `parameters_and_noise`: also the logarithms
@@ -60,7 +48,7 @@ struct SelectionOptions {
 ///
 /// Clouds of one-lag fits separate the modes best, for any number of lags in the motion. The mean adjusted Rand index
 /// is 0.82 over 40 clouds of ten known systems, fitted with four and eight lags (12 to 64 coefficients). If all
-/// coefficients are clustered, the index is 0.41, for full and for diagonal covariances (docs/results/mixture.md).
+/// coefficients are clustered, the index is 0.41, for full and for diagonal covariances (docs/results/simulated.md).
 enum class FeatureSet { automatic, parameters, parameters_and_noise, one_lag };
 
 template <>

@@ -1,0 +1,182 @@
+#include "app/cli/acting_doubts.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "filter/learn/chain/armax_bank.hpp"
+#include "ident/lag/armax.hpp"
+#include "ident/lag/structure_search.hpp"
+#include "io/import/import.hpp"
+
+namespace modebank::app {
+namespace {
+
+constexpr double least_nats_per_state = 6.0;
+constexpr Index most_samples = 20'000;
+
+/// The beginning of the training runs.
+Recording beginning_of(Recording recording) {
+  Index left = most_samples;
+  std::erase_if(recording.runs, [](const Trajectory& run) { return run.role != Role::train; });
+  for (Trajectory& run : recording.runs) {
+    const Index samples = std::min(left, run.samples());
+    run.time_s.conservativeResize(samples);
+    run.state.conservativeResize(Eigen::NoChange, samples);
+    run.input.conservativeResize(Eigen::NoChange, samples);
+    left -= samples;
+  }
+  std::erase_if(recording.runs, [](const Trajectory& run) { return run.samples() == 0; });
+  return recording;
+}
+
+void remove_last_input(Recording& recording) {
+  recording.inputs.pop_back();
+  for (Trajectory& run : recording.runs) run.input.conservativeResize(run.input.rows() - 1, Eigen::NoChange);
+}
+
+/// The structure of the single linear model that the search chose; empty if nothing was searched.
+std::optional<ArmaxStructure> searched_structure(const Archive& archive) {
+  if (!archive.structure || !archive.recording || !archive.structure->remark.empty()) return {};
+  const std::vector<StructureScore>& scores = archive.structure->scores;
+  const auto linear = std::find_if(scores.begin(), scores.end(), [](const auto& one) { return one.linear; });
+  if (linear == scores.end()) return {};
+  const bool intercept = linear->differences || !archive.baseline || archive.baseline->structure.intercept;
+  const InputDelays delays = archive.structure->input_delay.with_latest(linear->input_delay);
+  return ArmaxStructure{{linear->differences, linear->state_lags, linear->input_lags, linear->noise_lags, intercept},
+                        delays.by_input(archive.recording->input_count())};
+}
+
+/// A fit of one structure; empty where the runs are too short for it.
+std::optional<ArmaxCandidate> fitted(const Recording& recording, const ArmaxStructure& structure) {
+  LinearStageOptions options;
+  options.only = structure;
+  LinearStage stage = find_linear_stage(recording, options);
+  return stage.candidates.empty() ? std::nullopt : std::optional(std::move(stage.candidates.front()));
+}
+
+/// Gain of log score of another structure or recording on the same rows [nats]; -inf where one could not be fitted.
+double gain_of(const std::optional<ArmaxCandidate>& other, const std::optional<ArmaxCandidate>& base) {
+  if (!other || !base || other->fit.rows != base->fit.rows) return -INFINITY;
+  return other->left_out.sum() - base->left_out.sum();
+}
+
+std::string same_sample_doubt(const Recording& recording, const ArmaxStructure& structure) {
+  const std::vector<Index> least = least_delays(recording);
+  std::vector<std::string> gains;
+  std::optional<ArmaxCandidate> base;
+  for (std::size_t i = 0; i < least.size(); ++i) {
+    if (least[i] == 0 || structure.delays[i] == 0) continue;
+    if (!base) base = fitted(recording, structure);
+    ArmaxStructure at_once = structure;
+    at_once.delays[i] = 0;
+    if (const double gain = gain_of(fitted(recording, at_once), base);
+        gain >= least_nats_per_state * static_cast<double>(recording.state_count()))
+      gains.push_back(fmt::format("{} of the same sample would gain {:.0f} nats", recording.inputs[i].name, gain));
+  }
+  if (gains.empty()) return "";
+  return fmt::format(
+      "{}: it acts within one sample, or a controller computes it from {}, which the log cannot tell apart; the models "
+      "take its earlier samples alone (window.input_delay)",
+      fmt::join(gains, ", "), fmt::join(names_of(recording.states), ", "));
+}
+
+std::string noise_doubt(const Recording& recording, const ArmaxStructure& structure, const Eigen::VectorXd& rmse) {
+  if (std::count(structure.delays.begin(), structure.delays.end(), 0) == 0) return "";
+  LinearStageOptions options;
+  options.intercept = structure.order.intercept;
+  const LinearStage stage = find_linear_stage(recording, options);
+  if (stage.candidates.empty()) return "";
+  const Bank later = bank_of(recording, stage.fit(), std::nullopt);
+  for (Index i = 0; i < std::min(rmse.size(), later.R.rows()); ++i) {
+    const double noise = std::sqrt(later.R(i, i));
+    const double error = later.R_standard_error.rows() > i ? later.R_standard_error(i, i) / (2.0 * noise) : 0.0;
+    if (const Channel& state = recording.states[static_cast<std::size_t>(i)]; rmse(i) < noise - 2.0 * error)
+      return fmt::format(
+          "with a delay of 0, {0} is predicted within {1:.2g}{3}, which is below its sensor noise of {2:.2g}{3} (the "
+          "best "
+          "linear model of delay 1 or more): an input is computed from {0}, so set window.input_delay = 1 or more",
+          state.name, rmse(i), noise, state.unit.empty() ? "" : " " + state.unit);
+  }
+  return "";
+}
+
+struct Tried {
+  double gain;
+  Index moved;  ///< the state whose errors shrink most
+};
+
+/// The largest gain by the last input over a few delays.
+Tried try_last_input(Recording recording, const ArmaxStructure& structure) {
+  std::vector<std::optional<ArmaxCandidate>> fits;
+  for (const Index delay : {1, 2, 4, 8}) {
+    ArmaxStructure with = structure;
+    with.delays.push_back(delay);
+    fits.push_back(fitted(recording, with));
+  }
+  remove_last_input(recording);
+  const std::optional<ArmaxCandidate> base = fitted(recording, structure);
+  Tried best{-INFINITY, 0};
+  for (const auto& fit : fits)
+    if (const double gain = gain_of(fit, base); gain > best.gain) {
+      best.gain = gain;
+      (base->fit.S.diagonal().cwiseQuotient(fit->fit.S.diagonal())).maxCoeff(&best.moved);
+    }
+  return best;
+}
+
+}  // namespace
+
+std::vector<std::string> delay_doubts(const Archive& archive) {
+  const std::optional<ArmaxStructure> structure = searched_structure(archive);
+  if (!structure || structure->delays.empty()) return {};
+  const Recording recording = beginning_of(*archive.recording);
+  const std::vector<StructureScore>& scores = archive.structure->scores;
+  const auto linear = std::find_if(scores.begin(), scores.end(), [](const auto& one) { return one.linear; });
+  std::vector<std::string> doubts{same_sample_doubt(recording, *structure),
+                                  noise_doubt(recording, *structure, linear->rmse)};
+  std::erase(doubts, "");
+  return doubts;
+}
+
+std::vector<std::string> left_channel_doubts(const Archive& archive, const Config& config,
+                                             std::vector<ChannelLeft> left) {
+  constexpr std::size_t most_tried = 8, most_named = 3;
+  const std::optional<ArmaxStructure> structure = searched_structure(archive);
+  std::erase_if(left, [](const ChannelLeft& channel) { return channel.points == 0; });
+  if (!structure || left.empty()) return {};
+  std::stable_sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.points > b.points; });
+  std::vector<std::pair<double, std::string>> found;
+  for (std::size_t c = 0; c < std::min(most_tried, left.size()); ++c) {
+    Config with = config;
+    with.data.input.push_back(left[c].name);
+    if (with.data.input_unit.size() > 1) with.data.input_unit.emplace_back();
+    DataOptions data = data_options_of(with);
+    data.lag_auto = false;
+    Recording recording;
+    try {
+      recording = beginning_of(import_data(data).recording);
+    } catch (const std::runtime_error&) {
+      continue;  // a channel of another table, or one with missing values
+    }
+    if (recording.input_count() != std::ssize(structure->delays) + 1) continue;
+    const std::vector<std::string> states = names_of(recording.states);
+    if (const auto [gain, moved] = try_last_input(std::move(recording), *structure);
+        gain >= least_nats_per_state * static_cast<double>(states.size()))
+      found.emplace_back(gain, fmt::format("{} also moves {} ({:.0f} nats): data.input = {}; if it is measured beside "
+                                           "it, data.state",
+                                           left[c].name, states[static_cast<std::size_t>(moved)], gain,
+                                           fmt::join(with.data.input, ", ")));
+  }
+  std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+  std::vector<std::string> doubts;
+  for (std::size_t i = 0; i < std::min(most_named, found.size()); ++i) doubts.push_back(found[i].second);
+  return doubts;
+}
+
+}  // namespace modebank::app

@@ -1,0 +1,82 @@
+"""docs/howto/recipes.md: its lines of Python run unchanged on the demo, and stop where the filter was rejected."""
+import json
+import re
+import subprocess
+import sys
+
+from program import ProgramTest, SOURCE, demo, main, modebank, np
+
+PAGE = (SOURCE / "docs/howto/recipes.md").read_text(encoding="utf-8")
+# The parts of CasADi in the recipe, on numbers: a stand-in where the module is absent.
+CASADI = """import numpy as np
+class MX:
+    sym = staticmethod(lambda name, size: np.ones(size) / size)
+DM = np.array
+Function = lambda name, given, made, *names: lambda *values: made
+"""
+SEPARATION_M = 0.555
+
+
+def recipe(heading):
+    return re.search(rf"^## {heading}.*?^```python\n(.*?)^```", PAGE, re.M | re.S)[1]
+
+
+class Recipes(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        modebank("export", demo() / "demo.h5", "--to", "json", "-o", self.folder / "bank.json")
+        (self.folder / "run.json").write_text((demo().parent / "demo.json").read_text())
+        self.bank = json.loads((self.folder / "bank.json").read_text())
+
+    def run_recipe(self, heading, after="", **changes):
+        (self.folder / "bank.json").write_text(json.dumps(dict(self.bank, **changes)))
+        words = [sys.executable, "-c", recipe(heading) + after]
+        return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
+
+    def numbers(self, name):
+        """Numbers of the file by key."""
+        text = (self.folder / f"{name}.yaml").read_text()
+        return {key: np.array(re.findall(r"[-\d.]+", value), float)
+                for key, value in re.findall(r"^    (\w+): (\[.*?\]|\S+)$", text, re.M | re.S)}
+
+    def test_ros_parameters_are_those_of_the_simulated_robot(self):
+        done = self.run_recipe("ROS 2")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        for ground, gain in (("grip", 0.95), ("ice", 0.5)):  # of configs/systems/two_grounds.ini, noise 0.005 a step
+            said = self.numbers(ground)
+            np.testing.assert_allclose(said["wheel_separation_multiplier"] * SEPARATION_M, 1 / gain, rtol=0.02)
+            np.testing.assert_allclose(said["left_wheel_radius_multiplier"], 1, rtol=0.02)
+            noise = said["process_noise_covariance"].reshape(15, 15)
+            np.testing.assert_allclose(noise[11, 11], 0.005**2 / 0.1, rtol=0.15)
+            self.assertEqual((noise[6, 6], noise[14, 14], noise[11, 6]), (0.025, 0.015, 0))
+
+    def test_noise_of_more_than_one_lag_is_not_written(self):
+        done = self.run_recipe("ROS 2", lags=dict(self.bank["lags"], state_lags=2))
+        self.assertEqual(done.returncode, 0, done.stderr)
+        self.assertNotIn("process_noise_covariance", self.numbers("grip"))
+        self.assertIn("wheel_separation_multiplier", self.numbers("grip"))
+
+    def test_rejected_filters_stop_every_recipe(self):
+        (self.folder / "casadi.py").write_text(CASADI)
+        for heading in ("ROS 2", "CasADi"):
+            for change in (dict(verdict=dict(self.bank["verdict"], answer="overconfident")),
+                           dict(source=dict(self.bank["source"], filter="baseline"))):
+                self.assertEqual(self.run_recipe(heading, **change).returncode, 1, (heading, change))
+        self.assertEqual(list(self.folder.glob("*.yaml")), [])
+
+    def test_casadi_steps_as_the_equations(self):
+        if subprocess.run([sys.executable, "-c", "import casadi"], capture_output=True).returncode != 0:
+            print("Python has no module casadi: a stand-in evaluates the recipe")
+            (self.folder / "casadi.py").write_text(CASADI)
+        done = self.run_recipe("CasADi", "\nx, u, mu = ca.DM([0.3]), ca.DM([0.1, 0.4]), ca.DM([0.25, 0.75])"
+                               "\nprint(float(step(x, u, mu)[0]))")
+        self.assertEqual(done.returncode, 0, done.stderr)
+        T, expected = np.array(self.bank["transition"]["T"]), 0
+        for j, mode in enumerate(self.bank["modes"]):
+            A, B, c = (np.array(mode[key]["value"]).ravel() for key in "ABc")
+            expected += (0.25 * T[0, j] + 0.75 * T[1, j]) * (A[0] * 0.3 + B @ [0.1, 0.4] + c[0])
+        self.assertAlmostEqual(float(done.stdout.split()[-1]), expected, 12)
+
+
+if __name__ == "__main__":
+    main()
