@@ -4,7 +4,7 @@
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks uncertainty recovery evidence rule systems plants scale cost features check format lint shellcheck tidy tidy-changed seeds sanitize arm64 picture clean fuzz faults docs docs-examples docs-update reference-ini page-drag pages-large
+.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks uncertainty recovery evidence rule systems plants scale cost features check format lint shellcheck tidy tidy-changed seeds sanitize arm64 picture clean fuzz docs docs-examples docs-update reference-ini
 
 all: build
 
@@ -66,21 +66,17 @@ test test-long: packages-build packages-test build/build.ninja
 	@status=0; ctest --preset $(if $(findstring long,$@),long,release) -j $(JOBS) --output-junit $(CURDIR)/build/$@.xml || status=$$?; \
 	/usr/bin/python3 tests/skipped.py build/$@.xml || status=1; exit $$status
 
-bench-programs: packages-build packages-bench build/build.ninja
+bench-programs: packages-build build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank benchmarks
 
-# Benchmarks. Some compare window fits and EM with other programs, in Python only where these are installed.
+# Compares windows, filters and EM with other programs, in Python only where these are installed.
 bench: bench-programs
-	build/bench_modebank
-	build/compare_windows 5 build/compare_windows.bin
+	build/compare_windows 5
 	build/compare_imm
-	build/track_latency build/modebank
-	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/window_peers.py build/compare_windows.bin
 	OMP_NUM_THREADS=1 build/compare_em 5
 	build/compare_em memory
 	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
-	-PYTHONPATH=build/python /usr/bin/python3 tests/bench/python_step.py
 
 # Public benchmarks, with data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
 BENCHMARKS := $(notdir $(basename $(shell grep -l '^def main' tests/bench/benchmarks/*.py)))
@@ -143,9 +139,9 @@ list-checks:
 nightly: packages-build packages-test packages-check packages-nightly
 	tests/nightly $(STEPS)
 
-# Tests with the label nightly_KIND: browser, slurm, faults, tutorials. Everything is built, benchmarks, too, and a
+# Tests with the label nightly_KIND: browser, slurm, tutorials. Everything is built, benchmarks, too, and a
 # warning is an error.
-nightly-%: packages-build packages-test packages-bench packages-check packages-nightly
+nightly-%: packages-build packages-test packages-check packages-nightly
 	cmake --preset release -DMODEBANK_WARNINGS_AS_ERRORS=ON -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_BUILD_BENCHMARKS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 	ctest --test-dir build -L '^nightly_$*$$' --no-tests=error --output-on-failure -j $(JOBS)
@@ -179,13 +175,12 @@ docs-examples docs-update: packages-test packages-nightly build
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
-# Common misspellings, and style and types of the pages' scripts. NODE_PATH is where node finds
+# Common misspellings, and style of the pages' scripts. NODE_PATH is where node finds
 # Debian's modules.
 WORDS_THAT_ARE_RIGHT := fro,ist,lenght,nd,nees,positionof,siz,te,vell
 lint: packages-check
 	git ls-files '*.[ch]' '*.[ch]pp' '*.py' '*.js' '*.css' '*.sh' '*.cmake' '*CMakeLists.txt' Makefile .ci | xargs codespell -q 3 -L $(WORDS_THAT_ARE_RIGHT)
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
-	tsc --project app/report/web/tsconfig.json
 
 shellcheck: packages-check
 	git ls-files '*.sh' .ci | xargs grep -lE '^#!.*\b(ba)?sh$$' | xargs shellcheck
@@ -226,19 +221,6 @@ FUZZ_SECONDS ?= 600
 fuzz: packages-build packages-test
 	tests/fuzz/run $(FUZZ_SECONDS) $(JOBS)
 
-# Every command with a disk that becomes full at each of its calls; `make nightly` takes a sample of them.
-faults: packages-build packages-test build/build.ninja
-	cmake --preset release -DMODEBANK_BUILD_TESTS=ON >/dev/null
-	cmake --build --preset release -j $(JOBS) --target test_faults
-	MODEBANK_FAULTS=all build/test_faults
-
-# Evenness of a page's plot during a drag over a million samples.
-page-drag: packages-nightly build
-	/usr/bin/python3 tests/bench/page_drag.py build/modebank build/page_drag
-
-# Pages of a study with 200 runs and of a million samples in Chromium; `make nightly` has all other pages, too.
-pages-large: packages-nightly build
-	/usr/bin/python3 tests/browser/pages_test.py build/modebank . build/pages_large LargePages
 
 # README's picture: a held-out run of the demo.
 picture: build

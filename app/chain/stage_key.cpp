@@ -61,8 +61,8 @@ class KeyText {
 MODEBANK_KEY_FIELDS(FormatOptions, separator, decimal, header, na, skip_rows, skip_automatic, definitions)
 MODEBANK_KEY_FIELDS(SplitOptions, kind, blocks, last_percent, gap_samples)
 MODEBANK_KEY_FIELDS(DataOptions, root, inputs, states, state, input, truth, derive, where, state_unit, input_unit,
-                    label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, lag_range_s, quantum,
-                    quantum_auto, format, missing, disorder, split, train, test)
+                    label, time, time_unit, time_format, join, run, rate_hz, lag_s, lag_auto, quantum, quantum_auto,
+                    format, missing, disorder, split, train, test)
 MODEBANK_KEY_FIELDS(FitOptions, model, state_lags, input_lags, input_delay, wheel_radius_m, length, step, loss,
                     loss_scale, sigma, prior, prior_sd, intercept, centre, covariance, max_iterations, solver, seed)
 MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max_iterations, covariance_floor,

@@ -212,9 +212,6 @@ CommandLine parse_command_line(int argc, const char* const* argv) {
   CommandLine line;
   for (int i = 0; i < argc; ++i) line.typed += (i ? " " : "") + shell_quoted(argv[i]);
   line.program = program_as_called(argc > 0 ? argv[0] : "modebank");
-  if (argc > 1)
-    refuse_gone_command(argv[1]);  // call this first, because the options of a removed command are also
-                                   // removed
   const std::map<std::string, CommandOption> options = all_options();
   const po::options_description description = describe_options(options, line);
   po::positional_options_description positional;

@@ -242,12 +242,6 @@ const std::vector<CommandOption>& common_options() {
   return options;
 }
 
-void refuse_gone_command(const std::string& name) {
-  if (name == "view")
-    throw ConfigurationError(
-        "view was removed; instead: `modebank report FOLDER -o SITE` writes an index and pages that open from disk");
-}
-
 const Command* find_command(const std::string& name) {
   const std::vector<Command>& table = command_table();
   const auto found = std::find_if(table.begin(), table.end(), [&](const Command& c) { return c.name == name; });

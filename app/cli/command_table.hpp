@@ -55,9 +55,6 @@ const std::vector<Command>& command_table();
 /// Options that every command has.
 const std::vector<CommandOption>& common_options();
 
-/// Throws ConfigurationError if the command existed in an earlier version. The message names the replacement.
-void refuse_gone_command(const std::string& name);
-
 /// Returns null if no command has that name.
 const Command* find_command(const std::string& name);
 

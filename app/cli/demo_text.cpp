@@ -20,7 +20,6 @@ namespace modebank::app {
 namespace {
 
 constexpr int demo_columns = 100;
-constexpr Index strip_columns = 75;
 
 /// The simulated ground as a bank of one mode. The same functions can then compute the true and the estimated numbers.
 Bank true_bank(const Config& simulation, std::size_t ground) {
@@ -75,41 +74,6 @@ double agreement_of(const Archive& archive) {
   return static_cast<double>(alike) / static_cast<double>(all);
 }
 
-/// The judged run with the most even shares of grounds, so that every ground is visible.
-std::size_t most_varied_run(const Archive& archive) {
-  const RunLabels& labels = *archive.labels;
-  const auto most_frequent = [&](std::size_t run) {
-    Index most = 0;
-    for (int label = 0; label < std::ssize(labels.names); ++label)
-      most = std::max(most, (labels.of_runs[run].array() == label).count());
-    return most;
-  };
-  const std::vector<std::size_t> judged = positions_of(*archive.recording, judged_role(archive));
-  return *std::min_element(judged.begin(), judged.end(),
-                           [&](std::size_t a, std::size_t b) { return most_frequent(a) < most_frequent(b); });
-}
-
-/// Two rows of letters: the run's ground, and the ground of the most probable mode. Each letter stands for a few
-/// samples.
-std::string ground_strips(const Archive& archive) {
-  const std::size_t run = most_varied_run(archive);
-  const Eigen::VectorXi& labels = archive.labels->of_runs[run];
-  const std::vector<std::string> grounds = grounds_of_modes(archive);
-  const Eigen::MatrixXd& probability = evaluation_of(archive, "bank")->runs[run].mode_probability;
-  const Index columns = std::min(strip_columns, labels.size());
-  std::string driven, found;
-  for (Index i = 0; i < columns; ++i) {
-    const Index middle = (2 * i + 1) * labels.size() / (2 * columns);
-    Index mode = 0;
-    probability.col(middle).maxCoeff(&mode);
-    const std::string& ground = grounds[static_cast<std::size_t>(mode)];
-    driven += labels(middle) < 0 ? '?' : archive.labels->names[static_cast<std::size_t>(labels(middle))].front();
-    found += ground.empty() ? '?' : ground.front();
-  }
-  const std::string& name = archive.recording->runs[run].run;
-  return fmt::format("  run {0}, driven on  {1}\n  run {0}, found      {2}\n", name, driven, found);
-}
-
 /// One line per number: "grip time constant 0.1507 +- 0.0006 s true 0.150".
 std::string ground_rows(const FoundGround& mode) {
   std::string text, label = mode.ground;
@@ -162,9 +126,9 @@ std::string demo_text(const Archive& archive, const DemoFindings& findings, cons
       fmt::format("Found {} mode{} on {} grounds. A mode is one way in which {} answers; +- is one standard error.\n",
                   modes, modes == 1 ? "" : "s", findings.grounds, archive.recording->states.front().name);
   for (const FoundGround& mode : findings.modes) text += ground_rows(mode);
-  text += fmt::format("{:.1f} % of the {} samples are assigned to their true ground. One of the runs:\n",
-                      100.0 * findings.agreement, words_for(screen.role));
-  text += ground_strips(archive) + worth_text(screen);
+  text += fmt::format("{:.1f} % of the {} samples are assigned to their true ground.\n", 100.0 * findings.agreement,
+                      words_for(screen.role));
+  text += worth_text(screen);
   if (std::isfinite(screen.coverage))
     text += fmt::format("{:.1f} % of the held-out samples lie in the predicted 95 % band (92.5 to 97.5 % is good).\n",
                         100.0 * screen.coverage);

@@ -193,7 +193,6 @@ std::string help_on(const std::string& name) {
   const Terms terms = nlohmann::json::parse(assets::terms_json());
   const std::string words = term_text(terms, name);
   if (const Command* command = find_command(name)) return command_text(*command) + (words.empty() ? "" : "\n" + words);
-  refuse_gone_command(name);
   if (const std::string text = words + section_text(name); !text.empty()) return text;
   if (const Option* option = option_called(name)) return option_text(*option) + when_text(*option);
   std::vector<std::string> known;

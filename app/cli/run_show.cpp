@@ -31,7 +31,6 @@ void print_overview(const CommandLine& line) {
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), line.files[0], width, line.program));
   fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
   fmt::print("{}", wrapped(free_run_text(archive, width), width));
-  if (archive.windows) fmt::print("\nwindows\n{}", window_parameters_text(archive, width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));
   if (archive.nonlinear)

@@ -16,7 +16,6 @@ json errors_json(const std::vector<ErrorAhead>& errors) {
   for (const ErrorAhead& error : errors)
     list.push_back({{"steps", error.steps},
                     {"bank", json_numbers(error.bank)},
-                    {"other", json_numbers(error.other)},
                     {"combined", json_numbers(error.combined)},
                     {"fit_percent", json_numbers(error.fit_percent)}});
   return list;
@@ -86,7 +85,6 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"errors", errors_json(screen.errors)},
           {"free_run_start", screen.free_run_start},
           {"fit", json_numbers(screen.fit)},
-          {"other_fit", json_numbers(screen.other_fit)},
           {"modes", modes_json(archive, families)},
           {"families", summary_families(families)},
           {"role", name_of(screen.role)}};

@@ -23,7 +23,6 @@ struct TrackConfig {
 /// The [report] section, which limits the size of a page.
 struct ReportConfig {
   double size_mb = 64.0;  ///< largest size of a page [1e6 bytes]
-  Index runs = 10;        ///< number of a study's runs that get pages of their own
 };
 
 struct ArchiveConfig {
@@ -41,12 +40,11 @@ struct JobConfig {
 };
 
 struct SimulateConfig {
-  std::string name = "two_grounds";  ///< name of a built-in system, or a system file; it sets the two members below
-  SimulationOptions system;          ///< its runs and samples are keys of [simulate]
+  std::string name = "two_grounds";       ///< name of a built-in system, or a system file; it sets the members below
+  SimulationOptions system;               ///< its runs and samples are keys of [simulate]
   std::vector<std::string> ground_names;  ///< names of the modes
   std::string output = "simulated";
-  double rate_hz = 6.5;
-  double state_rate_hz = 65.0;
+  double rate_hz = 10.0, state_rate_hz = 100.0;
 };
 
 /// How the number of lags, the delay or the length of windows is set.

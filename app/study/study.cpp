@@ -79,7 +79,7 @@ StudyPlan settle_plan(const StudyCommand& command) {
 }
 
 void print_plan(const StudyCommand& command, const StudyPlan& plan) {
-  command.call.say(plan_text(plan, count_stages(command.config, plan), command.config.study.repeats));
+  command.call.say(plan_text(plan, command.config.study.repeats));
 }
 
 /// Throws DataError if the study had to stop.

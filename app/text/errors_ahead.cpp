@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
-#include <functional>
 
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
@@ -83,8 +82,6 @@ void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, con
   error.steps = steps;
   error.bank = rmse_of("bank");
   error.coverage_95 = row_of("bank")->coverage_95;
-  error.other = best_of_competitors([&](const char* name) { return row_of(name) ? &row_of(name)->rmse : nullptr; },
-                                    std::less<>());
   error.competitor = competitor.empty() ? Eigen::VectorXd() : rmse_of(competitor);
   error.combined = rmse_of(combined_name);
   error.fit_percent = fit_percent(error.bank, standard_deviation_of_measurements(archive, role, steps));

@@ -77,23 +77,6 @@ std::string gain_sentence(const Finding& finding, const char* start) {
                      gain_words(finding.gain, finding.standard_error), passing_gain(finding), stretches_words(finding));
 }
 
-/// Text on a single model that describes the runs as well as the bank, or better.
-std::string instead_words(const Finding& finding) {
-  const std::string& simpler = finding.better_description;
-  if (simpler.empty()) return "";
-  // Only a gain beyond its margin counts. A smaller gain does not show which model is better.
-  const char* const how = !falls_short_of(finding, simpler)       ? "may describe these runs as well"
-                          : finding.answer == Answer::cannot_tell ? "may describe these runs better"
-                                                                  : "describes these runs better";
-  // The sentence on the gain already names the best single model and states that the bank is worse. So this text is not
-  // needed.
-  if (simpler == finding.best_competitor && falls_short_of(finding, simpler) && finding.answer != Answer::cannot_tell)
-    return "";
-  if (simpler == finding.best_competitor) return fmt::format(" The single model `{}` {}.", simpler, how);
-  return fmt::format(" The simpler model ({}) {}, and is about as good as `{}` ({:+.3g} nats per sample).",
-                     described(finding, simpler), how, finding.best_competitor, -finding.description_loss);
-}
-
 std::string gain_words(const PairedGain& gain) {
   return fmt::format("the gain over `{}`, {},", gain.competitor, gain_words(gain.gain, gain.standard_error));
 }
@@ -169,16 +152,8 @@ std::string without_noise_words(const Finding& finding) {
 std::string one_mode_words(const Finding& finding) {
   if (finding.without_noise) return without_noise_words(finding);
   std::string text = "The bank has one mode: no modes of motion.";
-  if (finding.coarse.empty()) return text + instead_words(finding);
+  if (finding.coarse.empty()) return text;
   return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", coarse_reasons(finding));
-}
-
-/// Text such as " Over `noise_only` one nonlinear model gains +0.210 nats per sample, the bank +0.450."
-std::string both_words(const Finding& finding) {
-  if (finding.over_linear.empty()) return "";
-  return fmt::format(" Over `{}` one nonlinear model gains {:+.3f} nats per sample, and the {} gain {:+.3f}.",
-                     finding.over_linear, finding.nonlinear_over_linear, counted(finding.modes, "linear model"),
-                     finding.bank_over_linear);
 }
 
 std::string not_yet_words(const Finding& finding) {
@@ -196,11 +171,11 @@ std::string not_yet_words(const Finding& finding) {
 std::string no_evidence_words(const Finding& finding) {
   if (finding.best_competitor.empty()) return "No evidence for modes of motion.";
   if (finding.modes_differ || !finding.errors_known)
-    return "No evidence for modes of motion:" + gain_sentence(finding, " s") + instead_words(finding);
+    return "No evidence for modes of motion:" + gain_sentence(finding, " s");
   const std::string alike =
       "No evidence for modes of motion: the parameters of the modes differ by no more than their "
       "errors.";
-  return alike + gain_sentence(finding, " S") + instead_words(finding);
+  return alike + gain_sentence(finding, " S");
 }
 
 std::string answer_words(const Finding& finding) {
@@ -212,7 +187,7 @@ std::string answer_words(const Finding& finding) {
     case Answer::cannot_tell:
       return fmt::format("Cannot tell whether the {} {} modes of motion: {}.", judged(finding),
                          finding.runs == 1 ? "has" : "have", why_not_told(finding)) +
-             gain_sentence(finding, " S") + instead_words(finding);
+             gain_sentence(finding, " S");
     case Answer::no_evidence:
       return no_evidence_words(finding);
     case Answer::evidence:
@@ -228,7 +203,7 @@ std::string answer_words(const Finding& finding) {
 
 std::string finding_text(const Finding& finding) {
   const std::string equation = finding.equations.empty() ? "" : " `modebank show ARCHIVE` prints its equation.";
-  return answer_words(finding) + both_words(finding) + equation;
+  return answer_words(finding) + equation;
 }
 
 }  // namespace modebank

@@ -2,23 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
-#include "ident/base/natural_order.hpp"
-
 namespace modebank::app {
-
-namespace {
-
-constexpr std::size_t most_runs = 12;
-
-std::string run_text(const RunLag& run) {
-  if (run.status == LagStatus::not_estimated) return "";
-  return fmt::format("            {:<6} lag {}\n", run.run,
-                     lag_estimate_text(run.lag_s, run.lag_standard_error_s, run.status));
-}
-
-}  // namespace
 
 std::string lag_estimate_text(double lag_s, double standard_error_s, LagStatus status) {
   switch (status) {
@@ -55,14 +39,7 @@ std::string lag_text(const LagReport& report, bool done) {
     if (score.correction != LagCorrection::none)
       text += fmt::format(" ({:+.3f} +- {:.3f})", score.gain, score.gain_standard_error);
   }
-  text += "\n";
-  const auto estimated = std::count_if(report.runs.begin(), report.runs.end(),
-                                       [](const RunLag& run) { return run.status != LagStatus::not_estimated; });
-  if (static_cast<std::size_t>(estimated) > most_runs) return text;  // the archive's /lag/runs contains the other runs
-  std::vector<std::string> names;
-  for (const RunLag& run : report.runs) names.push_back(run.run);
-  for (const std::size_t i : natural_order(names)) text += run_text(report.runs[i]);
-  return text;
+  return text + "\n";
 }
 
 }  // namespace modebank::app

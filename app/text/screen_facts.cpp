@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <cstdlib>
-#include <functional>
 
 #include "app/text/calibration_text.hpp"
 #include "app/text/judged_runs.hpp"
@@ -107,13 +106,8 @@ void add_scores(FirstScreen& screen, const Archive& archive) {
   if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {
     screen.free_run_start = bank->start;
     screen.fit = bank->fit;
-    const auto fit_of = [&](const std::string& name) {
-      const FreeRunRow* row = free_run_of(archive, name, screen.role);
-      return row ? &row->fit : nullptr;
-    };
-    screen.other_fit = best_of_competitors(fit_of, std::greater<>());
-    if (const Eigen::VectorXd* fit = screen.competitor.empty() ? nullptr : fit_of(screen.competitor))
-      screen.other_fit_words = fmt::format("{} {}", screen.competitor, fit_words(*fit));
+    if (const FreeRunRow* other = free_run_of(archive, screen.competitor, screen.role))
+      screen.other_fit_words = fmt::format("{} {}", screen.competitor, fit_words(other->fit));
   }
   screen.mean = mean_words(screen);
   screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;

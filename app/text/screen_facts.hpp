@@ -41,7 +41,7 @@ struct FirstScreen {
   std::vector<ErrorAhead> errors;  ///< errors one step ahead and at the longest scored horizon
   Index free_run_start = 0;        ///< number of measured samples at the start of free runs; 0 if there are no free
                                    ///< runs
-  Eigen::VectorXd fit, other_fit;  ///< n_y, FIT of the bank's free runs, and the best FIT among the competitors [%]
+  Eigen::VectorXd fit;             ///< n_y, FIT of the bank's free runs [%]
   std::string other_fit_words;     ///< FIT of the best competitor's free runs, with the competitor's name
   Index mode_count = 0;
   ModeTable modes;  ///< empty if the bank was not scored

@@ -8,12 +8,9 @@
 #include "app/text/judged_runs.hpp"
 #include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
-#include "app/text/noise_factor_text.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
-#include "app/text/window_text.hpp"
-#include "ident/fit/window_summary.hpp"
 #include "ident/model/equations.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "ident/model/terms.hpp"
@@ -100,24 +97,6 @@ std::string candidates_text(const MixtureResult& mixture, int width) {
               fmt::format("{}{}", c.selected ? "  <- selected" : "", c.floor_active ? "  is at the floor" : ""));
   }
   return table.text(width);
-}
-
-std::string window_parameters_text(const Archive& archive, int width) {
-  const WindowFits& fits = *archive.windows;
-  const std::vector<std::string> labels = window_labels(archive);
-  const WindowSummary summary = summarize(fits);
-  const std::vector<bool> unidentifiable = unidentifiable_parameters(archive, fits.structure);
-  TextTable table({{"parameter", 9}, {"median", 12}, {"standard error", 16}, {"|t| > 2", 12}});
-  for (std::size_t i = 0; i < labels.size(); ++i) {
-    const auto j = static_cast<Index>(i);
-    if (i < unidentifiable.size() && unidentifiable[i])
-      table.add({labels[i], "", not_identifiable, ""});
-    else
-      table.add({labels[i], fmt::format("{:.4g}", summary.parameter(j)),
-                 fmt::format("{:.3g}", summary.standard_error(j)),
-                 fmt::format("{:.0f} %", 100 * summary.significant(j))});
-  }
-  return table.text(width) + fmt::format("R^2 of the increments {:.3f} (medians)\n", fmt::join(summary.r_squared, " "));
 }
 
 std::string mode_diagnostics_text(const Archive& archive, int width) {
@@ -233,8 +212,9 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }
-  return table.text(width) + noise_factor_text(archive, width) + motion_parameters_text(bank, names, width) +
-         switches_text(bank, names, width);
+  const char* const noise =
+      bank.noise_factor.empty() ? "" : "noise: every Q has a factor that depends on states and inputs\n";
+  return table.text(width) + noise + motion_parameters_text(bank, names, width) + switches_text(bank, names, width);
 }
 
 }  // namespace modebank::app

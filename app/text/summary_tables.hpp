@@ -13,9 +13,6 @@ std::string scores_text(const Archive& archive, int width = 0);
 /// The table of candidates. The chosen candidate is marked.
 std::string candidates_text(const MixtureResult& mixture, int width = 0);
 
-/// Statistics of the window fits: for each parameter the medians of estimate, standard error and t value, and R^2.
-std::string window_parameters_text(const Archive& archive, int width = 0);
-
 /// Use and calibration of the bank's modes on held-out runs, or on training runs if no run is held out.
 std::string mode_diagnostics_text(const Archive& archive, int width = 0);
 

@@ -70,31 +70,6 @@ std::string bank_text(const Bank& bank) {
   return text + "\n";
 }
 
-/// Residual tests of training and held-out runs, if the archive has them.
-std::string residuals_text(const Archive& archive) {
-  if (!archive.recording) return "";
-  std::string text;
-  for (const ResidualTestSet& set : archive.residual_tests) {
-    if ((set.model != "global" && set.model != "bank") || set.runs.empty()) continue;
-    std::vector<std::string> roles, autocorrelations, input_correlations;
-    for (const Role role : {Role::train, Role::test}) {
-      std::vector<ResidualTests> runs;
-      for (std::size_t i = 0; i < set.runs.size(); ++i)
-        if (archive.recording->runs[i].role == role) runs.push_back(set.runs[i]);
-      if (runs.empty()) continue;
-      const ResidualSummary summary = summarize(runs);
-      roles.emplace_back(name_of(role));
-      autocorrelations.push_back(fmt::format("{:.0f}", 100 * summary.autocorrelation_outside));
-      input_correlations.push_back(fmt::format("{:.0f}", 100 * summary.cross_correlation_outside));
-    }
-    text +=
-        fmt::format("residuals {:<6} beyond {:g} % bands: {} % of autocorrelations, {} % of input correlations ({})\n",
-                    set.model, 100 * set.runs.front().level, fmt::join(autocorrelations, " / "),
-                    fmt::join(input_correlations, " / "), fmt::join(roles, " / "));
-  }
-  return text;
-}
-
 /// Whether the filter has several modes. Only then its modes have their own rows.
 bool has_modes(const Archive& archive, const DiagnosticsRow& row) {
   return std::any_of(archive.diagnostics.begin(), archive.diagnostics.end(), [&row](const DiagnosticsRow& other) {
@@ -207,7 +182,6 @@ std::string summary_text(const Archive& archive, int width) {
     if (const std::string warning = refinement_warning(archive.measured_fit); !warning.empty())
       text += "          warning: " + warning + "\n";
   }
-  text += residuals_text(archive);
   if (!archive.summary.empty())
     text += "\n" + scores_text(archive, width) + verdicts_text(archive) + confusion_text(archive, width) +
             horizon_text(archive) + finding_text(archive);

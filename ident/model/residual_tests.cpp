@@ -131,21 +131,6 @@ ResidualTests test_residuals(const MatrixXd& residual, const MatrixXd& input, co
   return tests;
 }
 
-ResidualSummary summarize(const std::vector<ResidualTests>& runs) {
-  const auto mean = [&](auto get) {
-    double sum = 0.0, count = 0.0;
-    for (const ResidualTests& tests : runs) {
-      const double value = get(tests);
-      if (std::isnan(value)) continue;
-      sum += value;
-      count += 1.0;
-    }
-    return count > 0.0 ? sum / count : not_a_number;
-  };
-  return {mean([](const ResidualTests& tests) { return tests.autocorrelation_outside(); }),
-          mean([](const ResidualTests& tests) { return tests.cross_correlation_outside(); })};
-}
-
 ResidualTests test_residuals(const Trajectory& run, const LinearStructure& structure, const VectorXd& theta,
                              const ResidualTestOptions& options) {
   const Transitions t = stack_transitions(run, 0, run.transitions(), structure);

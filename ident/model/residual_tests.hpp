@@ -57,11 +57,4 @@ ResidualTests test_residuals(const Eigen::MatrixXd& residual, const Eigen::Matri
 ResidualTests test_residuals(const Trajectory& run, const LinearStructure& structure, const Eigen::VectorXd& theta,
                              const ResidualTestOptions& options = {});
 
-/// Mean over several runs of the shares outside the bands. Undefined shares are ignored; NaN if all are undefined.
-struct ResidualSummary {
-  double autocorrelation_outside = 0.0;
-  double cross_correlation_outside = 0.0;
-};
-ResidualSummary summarize(const std::vector<ResidualTests>& runs);
-
 }  // namespace modebank

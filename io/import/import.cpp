@@ -212,10 +212,10 @@ std::vector<RunStreams> named_streams(std::vector<FilePlan>& plans, const DataOp
   return runs;
 }
 
-LagReport find_lags(const std::vector<RunStreams>& streams, double range_s, double rate_hz) {
+LagReport find_lags(const std::vector<RunStreams>& streams, double rate_hz) {
   std::vector<RunPair> pairs;
   for (const RunStreams& run : streams) pairs.push_back({run.run, run.role, run.states.stream, run.inputs.stream});
-  return choose_lag(pairs, {range_s, rate_hz});
+  return choose_lag(pairs, {.rate_hz = rate_hz});
 }
 
 void mark_averaged(const AveragedColumns& averaged, Recording& recording) {
@@ -239,7 +239,7 @@ ImportedData import_data(const DataOptions& options, const MemoryTables* memory,
   const LogSampling sampling = choose_sampling(streams, options, learned, data.notes);
   mark_averaged(sampling.averaged, data.recording);
   data.step_scatter = sampling.step_scatter;
-  if (options.lag_auto) data.lag = find_lags(streams, options.lag_range_s, sampling.rate_hz);
+  if (options.lag_auto) data.lag = find_lags(streams, sampling.rate_hz);
   auto& runs = data.recording.runs;
   Quanta quanta(options);
   LabelHolder labels;

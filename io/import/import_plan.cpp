@@ -44,8 +44,6 @@ void check_options(const DataOptions& options) {
     throw ConfigurationError(fmt::format("data.rate_hz = {}: must be 0 to {}", options.rate_hz, highest_rate_hz));
   if (!std::isfinite(options.lag_s))
     throw ConfigurationError(fmt::format("data.lag_s = {}: must be finite", options.lag_s));
-  if (!(options.lag_range_s > 0.0) || !std::isfinite(options.lag_range_s))
-    throw ConfigurationError(fmt::format("data.lag_range_s = {}: must be above 0", options.lag_range_s));
   if (options.lag_auto && options.input.empty())
     throw ConfigurationError("data.lag_s = auto needs inputs; name them in data.input");
 }

@@ -79,7 +79,6 @@ struct DataOptions {
   double rate_hz = 0.0;         ///< 0: the inputs file's own times; > 0: resampled (states linear, inputs held)
   double lag_s = 0.0;           ///< delay of the inputs' effect: at time t the input is u(t - lag_s)
   bool lag_auto = false;        ///< true: lag_s is estimated on the training runs (ident/lag/choice.hpp)
-  double lag_range_s = 2.5;     ///< largest lag, positive or negative, that the estimate tries
   std::vector<double> quantum;  ///< rounding step of the states [state unit]: one per state, or one for all; empty:
                                 ///< none
   bool quantum_auto = false;    ///< true: the step is found in the training runs (io/import/quanta.hpp)

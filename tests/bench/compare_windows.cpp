@@ -9,7 +9,6 @@
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
-#include <fstream>
 #include <functional>
 #include <string>
 
@@ -232,14 +231,6 @@ void compare_threads(const Trajectory& run) {
              samples - peer_length, best[0], best[1], best[0] / best[1]);
 }
 
-void write_for_python(const Trajectory& run, const std::string& path) {
-  std::ofstream file(path, std::ios::binary);
-  for (Index k = 0; k < samples; ++k) {
-    const double row[3] = {run.state(0, k), run.input(0, k), run.input(1, k)};
-    file.write(reinterpret_cast<const char*>(row), sizeof row);
-  }
-}
-
 }  // namespace
 }  // namespace modebank::bench
 
@@ -248,7 +239,6 @@ int main(int argc, char** argv) {
   using namespace modebank::bench;
   const int rounds = argc > 1 ? std::atoi(argv[1]) : 5;
   const Trajectory run = make_trajectory();
-  if (argc > 2) write_for_python(run, argv[2]);
   const PeerData data = peer_data(run);
   {
     tbb::global_control limit(tbb::global_control::max_allowed_parallelism, 1);

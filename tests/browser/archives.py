@@ -1,5 +1,4 @@
 """Archives from which pages are made, and modebank's command line."""
-import os
 import pathlib
 import random
 import subprocess
@@ -20,29 +19,21 @@ class Modebank:
     def __init__(self, program, source, work):
         self.program, self.source, self.work = program, pathlib.Path(source), pathlib.Path(work)
 
-    def __call__(self, *arguments, status=0):
+    def __call__(self, *arguments):
         result = subprocess.run([self.program, *map(str, arguments)], capture_output=True, text=True, cwd=self.work)
-        assert result.returncode == status, f"modebank {arguments}: status {result.returncode}\n{result.stderr}"
-        return result
+        assert result.returncode == 0, f"modebank {arguments}: status {result.returncode}\n{result.stderr}"
 
-    def page(self, name, *archives, options=()):
+    def page(self, name, *archives):
         """Made once."""
         page = self.work / f"{name}.html"
         if not page.exists():
-            self("report", *archives, "-o", page, *options)
+            self("report", *archives, "-o", page)
         return page
 
     def run(self, name, config, *options):
         archive = self.work / f"{name}.h5"
         self("run", config, "--archive.output", archive, *options)
         return archive
-
-
-def real_data():
-    for folder in (os.environ.get("MODEBANK_DATA"), pathlib.Path(__file__).resolve().parents[3] / "shared" / "data"):
-        if folder and (pathlib.Path(folder) / "borealtc" / "ICE").is_dir():
-            return pathlib.Path(folder)
-    return None
 
 
 def demo_data(modebank):
@@ -56,27 +47,10 @@ def demo(modebank, data, name, *options):
                        "--mixture.restarts", "2", *QUICK, *options)
 
 
-def ice(modebank):
-    """The Husky on ice."""
-    return modebank.run("ice", modebank.source / "configs/husky_ice.ini", "--data.root", real_data(), *QUICK,
-                        "--mixture.components", "1..4", "--mixture.restarts", "2")
-
-
 def rows(file, run):
     """The rows of a run in arrays over samples of an open archive."""
     (row,) = [row for row in file["data/runs"][:] if row["name"].decode() == run]
     return slice(row["first"], row["first"] + row["samples"])
-
-
-def held_out(file):
-    """Names of the held-out runs of an open archive."""
-    return [row["run"].decode() for row in file["evaluation/summary"][:] if row["filter"] == b"bank" and row["role"] == b"test" and row["run"] != b"*"]
-
-
-def drive(modebank):
-    """DRIVE's Husky: 201 runs, more than a page draws."""
-    return modebank.run("drive", modebank.source / "configs/drive_husky.ini", "--data.root", real_data(), *QUICK, "--bank.transition", "labels",
-                        "--mixture.components", "4", "--mixture.restarts", "1")
 
 
 def hostile(modebank):
@@ -106,15 +80,4 @@ def study(modebank, data):
                       "vary = window.length = 15 | 25\nvary = mixture.components = 1 | 2 | 3\nvary = mixture.covariance = full | diagonal\n",
                       encoding="utf-8")
     modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK)
-    return folder
-
-
-def large_study(modebank):
-    """A study of 200 runs over short data: 50 settings with four seeds each."""
-    data, folder, config = modebank.work / "short", modebank.work / "large_study", modebank.work / "large_study.ini"
-    modebank("simulate", modebank.source / "configs/simulate_demo.ini", "--simulate.output", data, "--simulate.runs", "4", "--simulate.samples", "200")
-    text = (modebank.source / "configs/demo.ini").read_text()
-    config.write_text(text + "\n[mixture]\nrestarts = 1\n[study]\nvary = window.length = 10 | 15 | 20 | 25 | 30\nvary = mixture.components = 1 | 2 | 3 | 4 | 5\n"
-                             "vary = mixture.covariance = full | diagonal\nrepeats = 4\n", encoding="utf-8")
-    modebank("study", config, "--data.root", data, "--study.output", folder, *QUICK, "--bank.transition", "labels")
     return folder

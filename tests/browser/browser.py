@@ -25,8 +25,6 @@ class Browser:
         options.set_capability("goog:loggingPrefs", {"performance": "ALL", "browser": "ALL"})
         self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
         self.driver.set_script_timeout(PATIENCE_S)
-        # A page draws figures out of sight when it is idle; in these tests that would happen during the next test.
-        self.cdp("Page.addScriptToEvaluateOnNewDocument", source="window.requestIdleCallback = () => 0;")
         self.size(width, height)
 
     def close(self):
@@ -57,13 +55,11 @@ class Browser:
             time.sleep(0.05)
 
     def open(self, page, seconds=PATIENCE_S):
-        """Opens a file and waits until the page is drawn; returns the seconds that this took."""
+        """Opens a file and waits until the page is drawn."""
         self.messages()
-        start = time.monotonic()
         self.driver.get(pathlib.Path(page).resolve().as_uri())
         self.wait("return document.documentElement.dataset.ready === 'true' || document.querySelector('.failure')", seconds=seconds,
                   what=f"{page} to draw itself")
-        return time.monotonic() - start
 
     def draw_all(self, within="main", seconds=PATIENCE_S):
         """Scrolls through the page, or one part of it, until every plot is drawn; plots are drawn near the window. Returns their number."""
@@ -97,15 +93,9 @@ class Browser:
         """Other files to which the page refers."""
         return self.run("return performance.getEntriesByType('resource').map((e) => e.name).filter((n) => !/^(data|blob):/.test(n))")
 
-    def screenshot(self, name, whole=True):
-        if whole:
-            self.run("window.scrollTo(0, 0)")
-        size = self.run("return [document.documentElement.clientWidth, document.documentElement.scrollHeight]")
-        clip = {"x": 0, "y": 0, "width": size[0], "height": min(size[1], 12000), "scale": 1}
-        shot = self.cdp("Page.captureScreenshot", format="png", captureBeyondViewport=whole, **({"clip": clip} if whole else {}))
-        path = self.artefacts / f"{name}.png"
-        path.write_bytes(base64.b64decode(shot["data"]))
-        return path
+    def screenshot(self, name):
+        shot = self.cdp("Page.captureScreenshot", format="png", captureBeyondViewport=True)
+        (self.artefacts / f"{name}.png").write_bytes(base64.b64decode(shot["data"]))
 
     # Mouse events go through the protocol, like a user's.
     def mouse(self, kind, x, y, **more):
@@ -114,27 +104,9 @@ class Browser:
     def move(self, x, y):
         self.mouse("mouseMoved", x, y)
 
-    def click(self, x, y):
-        self.move(x, y)
-        self.mouse("mousePressed", x, y, button="left", clickCount=1, buttons=1)
-        self.mouse("mouseReleased", x, y, button="left", clickCount=1)
-
     def drag(self, x, y, to_x, to_y):
         self.move(x, y)
         self.mouse("mousePressed", x, y, button="left", clickCount=1, buttons=1)
         for step in range(1, 6):
             self.mouse("mouseMoved", x + (to_x - x) * step / 5, y + (to_y - y) * step / 5, button="left", buttons=1)
         self.mouse("mouseReleased", to_x, to_y, button="left", clickCount=1)
-
-    def key(self, key):
-        for kind in ("keyDown", "keyUp"):
-            self.cdp("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode={"Tab": 9, "Enter": 13}.get(key, 0),
-                     **({"text": "\r"} if key == "Enter" and kind == "keyDown" else {}))
-
-    def box(self, selector):
-        """The box in the window of the first matching element, which is scrolled into view."""
-        return self.run("""
-            const element = document.querySelector(arguments[0]);
-            element.scrollIntoView({block: 'center'});
-            const box = element.getBoundingClientRect();
-            return {x: box.x, y: box.y, width: box.width, height: box.height};""", selector)

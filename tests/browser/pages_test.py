@@ -1,10 +1,8 @@
 #!/usr/bin/env python3
 """The report's pages in headless Chromium: pages_test.py PROGRAM SOURCE_FOLDER WORK_FOLDER [TEST...]
 
-Without a TEST all of them but LargePages, which takes minutes and is `make pages-large`.
-
 Makes pages of every kind and checks that each section draws without a console error or a request, that zoom, hover,
-click-through, sorting and filtering work, and that the numbers shown are the archive's. Pages and screenshots stay in
+click-through and sorting work, and that the numbers shown are the archive's. Pages and screenshots stay in
 WORK_FOLDER/pages.
 """
 import os
@@ -29,15 +27,12 @@ for program, package in (("chromium", "chromium"), ("chromedriver", "chromium-dr
         leave(f"{program} is absent: apt-get install {package}")
 
 import session  # noqa: E402
-from compare_page import ComparePage, Refusals  # noqa: E402, F401
-from first_screen import FirstScreen  # noqa: E402, F401
-from large_pages import LargePages  # noqa: E402, F401
+from compare_page import ComparePage  # noqa: E402, F401
 from looking_around import LookingAround  # noqa: E402, F401
-from mode_pages import ModePages  # noqa: E402, F401
 from run_pages import RunPages  # noqa: E402, F401
 from study_page import StudyPage  # noqa: E402, F401
 
-TESTS = ["ComparePage", "FirstScreen", "LookingAround", "ModePages", "Refusals", "RunPages", "StudyPage"]
+TESTS = ["ComparePage", "LookingAround", "RunPages", "StudyPage"]
 
 if __name__ == "__main__":
     program, source, folder = (pathlib.Path(argument).resolve() for argument in sys.argv[1:4])

@@ -79,21 +79,6 @@ TEST(ErrorAware, ZeroErrorsGiveThePlainFit) {
     }
 }
 
-TEST(ErrorAware, EqualErrorsAddToTheCovariances) {
-  // If all points have the same error covariance S, a mixture whose components are inflated by S has the same density
-  // N(mu, Sigma + S).
-  for (const Index features : {2, 4, 9}) {  // the last size is beyond the unrolled kernels
-    const GaussianMixture mixture = any_mixture(features, 3);
-    GaussianMixture inflated = mixture;
-    const Eigen::MatrixXd error = random_errors(features, 1, 0.8, 3);
-    for (Eigen::MatrixXd& covariance : inflated.covariances) covariance += error.reshaped(features, features);
-    const Eigen::MatrixXd points = draw(inflated, 200, 6), errors = error.replicate(1, 200);
-    const PointSet set(points, unweighted, errors);
-    EXPECT_TRUE(near(log_density(mixture, set), log_density(inflated, points), 1e-11));
-    EXPECT_TRUE(near(responsibilities(mixture, set), responsibilities(inflated, points), 1e-11));
-  }
-}
-
 /// One iteration of Bovy, Hogg & Roweis (2011), eq. 14 to 16, point by point in the points' own coordinates.
 EmResult direct_step(const Eigen::MatrixXd& points, const Eigen::MatrixXd& errors, GaussianMixture mixture) {
   const Index F = points.rows(), N = points.cols(), K = mixture.components();
@@ -183,21 +168,6 @@ TEST(ErrorAware, LogLikelihoodNeverFalls) {
       mixture = step.mixture;
     }
   }
-}
-
-TEST(ErrorAware, RecoversWhatPlainEmBlurs) {
-  const GaussianMixture truth = three_clusters(6.0);
-  constexpr Index count = 4000;
-  const Eigen::MatrixXd errors = random_errors(2, count, 1.0, 9);
-  const Eigen::MatrixXd points = with_errors(draw(truth, count, 9), errors, 10);
-  const EmResult plain = fit_em(PointSet(points), truth, EmOptions());
-  const EmResult aware = fit_em(PointSet(points, unweighted, errors), truth, EmOptions());
-  for (std::size_t k = 0; k < 3; ++k) {
-    const double of_truth = truth.covariances[k].trace();
-    EXPECT_NEAR(aware.mixture.covariances[k].trace() / of_truth, 1.0, 0.25) << k;
-    EXPECT_GT(plain.mixture.covariances[k].trace() / of_truth, 2.0) << k;
-  }
-  EXPECT_TRUE(near(aware.mixture.means, truth.means, 0.2));
 }
 
 TEST(ErrorAware, ScalesAndThreadsChangeNothing) {

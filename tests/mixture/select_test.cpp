@@ -63,11 +63,6 @@ TEST(Criteria, TiesGoToTheFirstAndNonFiniteRowsAreSkipped) {
   EXPECT_EQ(best_candidate(rows), -1);
 }
 
-TEST(Select, FindsThreeSeparatedClusters) {
-  const FeatureCloud cloud = cloud_of(draw(three_clusters(12.0), 1500, 1), 6);
-  EXPECT_EQ(selected(select_mixture(fits_of(cloud, 1, 1), cloud, up_to(5), 1)), 3);
-}
-
 TEST(Select, TableRowsAgreeWithTheMixtures) {
   const FeatureCloud cloud = cloud_of(draw(three_clusters(3.0), 600, 2), 4);
   const MixtureResult result = select_mixture(fits_of(cloud, 25, 1), cloud, up_to(3), 1);
@@ -216,18 +211,6 @@ TEST(Select, ImpossibleRequestsSayWhatWouldBeRight) {
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);
   options.components.clear();
   EXPECT_THROW(select_mixture(fits_of(cloud, 1, 1), cloud, options, 1), std::invalid_argument);
-}
-
-TEST(Select, TableIsBitwiseTheSameForAnyNumberOfThreads) {
-  const FeatureCloud cloud = cloud_of(draw(three_clusters(2.0), 500, 6), 4);
-  std::vector<MixtureResult> results;
-  for (const std::size_t threads : {1u, 4u}) {
-    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
-    results.push_back(select_mixture(fits_of(cloud, 25, 1), cloud, up_to(4), 1));
-  }
-  EXPECT_EQ(results[0].mixture.means, results[1].mixture.means);
-  EXPECT_EQ(results[0].responsibilities.all(), results[1].responsibilities.all());
-  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(results[0].candidates[i].bic, results[1].candidates[i].bic);
 }
 
 }  // namespace

@@ -27,17 +27,6 @@ Index chosen(const std::vector<Candidate>& candidates) {
   return 0;
 }
 
-/// Checks that figures are never NaN, and that a status explains each missing fit.
-void expect_stated(const Selection& result) {
-  EXPECT_TRUE(is_finite(result.mixture));
-  for (const Candidate& row : result.candidates) {
-    for (const double value : {row.log_likelihood, row.bic, row.aic, row.bic_naive, row.effective_samples})
-      EXPECT_FALSE(std::isnan(value)) << row.components;
-    EXPECT_EQ(std::isfinite(row.log_likelihood), row.status == CandidateStatus::fitted) << row.components;
-  }
-  EXPECT_GE(chosen(result.candidates), 1);
-}
-
 TEST(Selection, FindsThreeClustersAmongIndependentPoints) {
   const Eigen::MatrixXd points = draw(three_clusters(12.0), 600, 1);
   const Selection result = select(points, {}, from_one_to(5), 1);
@@ -54,33 +43,6 @@ TEST(Selection, OverlapTakesEvidenceAway) {
   const Eigen::MatrixXd points = draw(three_clusters(3.0), 600, 2);
   EXPECT_EQ(chosen(select(points, {}, from_one_to(4), 1).candidates), 3);
   EXPECT_LT(chosen(select(points, 30.0, from_one_to(4), 1).candidates), 3);
-}
-
-TEST(Selection, WholeWeightsAreCopies) {
-  const Eigen::MatrixXd points = draw(three_clusters(8.0), 200, 3);
-  const Eigen::VectorXd twice = Eigen::VectorXd::Constant(200, 2.0);
-  SelectionOptions options = from_one_to(1);  // the start has no effect on a single component
-  const Candidate weighted = select(PointSet(points, twice), {}, options, 1).candidates[0];
-  const Eigen::MatrixXd twofold = points.replicate(1, 2);
-  const Candidate copied = select(twofold, {}, options, 1).candidates[0];
-  EXPECT_NEAR(weighted.bic, copied.bic, 1e-9 * std::abs(copied.bic));
-}
-
-TEST(Selection, SamePartitionInAnyUnits) {
-  const Eigen::MatrixXd points = draw(three_clusters(6.0), 400, 4);
-  const Selection plain = select(points, {}, from_one_to(4), 1);
-  const Eigen::MatrixXd memberships = responsibilities(plain.mixture, points);
-  for (const double unit : {1e-6, 1e6}) {
-    Eigen::MatrixXd scaled = points;
-    scaled.row(1) *= unit;
-    const Selection result = select(scaled, {}, from_one_to(4), 1);
-    ASSERT_EQ(result.mixture.components(), plain.mixture.components());
-    EXPECT_TRUE(near(responsibilities(result.mixture, scaled), memberships, 1e-6)) << unit;
-    EXPECT_TRUE(near(result.mixture.means.row(1) / unit, plain.mixture.means.row(1), 1e-6)) << unit;
-    for (std::size_t i = 0; i < plain.candidates.size(); ++i)
-      EXPECT_NEAR(result.candidates[i].log_likelihood, plain.candidates[i].log_likelihood - 400.0 * std::log(unit),
-                  1e-4);
-  }
 }
 
 TEST(Selection, StartsFromAGivenMixture) {
@@ -177,31 +139,6 @@ TEST(SelectionWarnings, TheEdgeOfTheRange) {
   rows[0].components = 2;
   rows[1].components = 3;
   EXPECT_NE(selection_warnings(rows).at(0).find("fewest"), std::string::npos);
-}
-
-TEST(SelectionRobustness, BadCloudsGiveStatedRows) {
-  Eigen::MatrixXd constant(3, 200);
-  constant.topRows(2) = draw(three_clusters(10.0), 200, 1);
-  constant.row(2).setConstant(7.0);
-  Eigen::MatrixXd few(2, 60);
-  for (Index i = 0; i < 60; ++i) few.col(i) << static_cast<double>(i % 3), static_cast<double>((i % 3) * 2);
-  Eigen::MatrixXd outlier = draw(three_clusters(5.0), 200, 2);
-  outlier.col(7).setConstant(1e100);
-  for (const Eigen::MatrixXd& points : {constant, few, outlier, Eigen::MatrixXd(few.leftCols(1).replicate(1, 50))}) {
-    for (const CovarianceType type : {CovarianceType::full, CovarianceType::diagonal}) {
-      SelectionOptions options = from_one_to(6);
-      options.em.covariance = type;
-      expect_stated(select(points, {}, options, 1));
-    }
-  }
-  const Selection three = select(few, {}, from_one_to(6), 1);
-  EXPECT_EQ(three.candidates[2].status, CandidateStatus::fitted);
-  EXPECT_EQ(three.candidates[3].status, CandidateStatus::too_few_points);
-  SelectionOptions too_many;
-  too_many.components = {4, 5};
-  EXPECT_THROW(select(few, {}, too_many, 1), DataError);
-  const Eigen::MatrixXd none(2, 0);
-  EXPECT_THROW(select(none, {}, too_many, 1), DataError);
 }
 
 }  // namespace

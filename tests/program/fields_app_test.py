@@ -1,5 +1,4 @@
-"""Logs and mistakes of the field: which columns `init` takes and names, which files stay, what sbatch may print."""
-import os
+"""Logs and mistakes of the field: which columns `init` takes and names and which files stay."""
 import shutil
 
 from program import ProgramTest, main, modebank, np, proposal
@@ -123,26 +122,6 @@ class Files(Configured):
     def test_keys_that_contradict_each_other_are_named(self):
         told = self.run_program("run", "c.ini", "--bank.noise", "shared", "--bank.refine", "em", status=2)
         self.assertRegex(told, "bank.noise.*bank.refine")
-
-
-class Slurm(Configured):
-    def fake(self, name, script):
-        path = self.folder / "bin" / name
-        path.parent.mkdir(exist_ok=True)
-        path.write_text("#!/bin/sh\n" + script)
-        path.chmod(0o755)
-
-    def study(self, stage, *words, status=0):
-        return self.run_program("study", "c.ini", "--study.vary", "job.seed = 1 | 2", "--study.stage", stage, *words,
-                                status=status, env={"PATH": f"{self.folder}/bin:{os.environ['PATH']}"})
-
-    def test_the_last_number_is_the_job(self):
-        self.fake("sbatch", "printf 'Welcome to node 7\\nAllocation 12 OK\\nSubmitted batch job 4201;c2\\n'")
-        self.assertRegex(self.study("submit", "--study.slurm_options", "--time=60"),
-                         "--array=1-1 --time=60 .*\n.*--dependency=afterany:4201 --time=60 ")
-        self.fake("sbatch", "echo 'invalid partition' >&2; exit 1")
-        self.assertIn("invalid partition", self.study("submit", status=1))
-        self.assertIn("--array", self.study("submit", "--study.slurm_options", "--array=0-5%2", status=2))
 
 
 if __name__ == "__main__":

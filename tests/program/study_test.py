@@ -1,6 +1,7 @@
 """A study: its trials are single runs to the bit, whatever stops, shares, damages or submits it."""
 import csv
 import os
+import re
 import signal
 import subprocess
 import time
@@ -95,20 +96,33 @@ class Study(ProgramTest):
         self.check()
 
     def test_slurm_gets_an_array_and_a_merge(self):
-        sbatch = self.folder / "sbatch"
+        """In a folder whose name a shell or Slurm could read otherwise."""
+        self.other = self.folder / "it's 100 %j \"odd\" $HOME"
+        sbatch, environment = self.folder / "sbatch", {"PATH": f"{self.folder}:{os.environ['PATH']}"}
         submit = "--study.stage=submit", "--study.slurm_options=--time=60 --comment=a=b"
         self.study(*submit, env={"PATH": str(self.folder)}, status=2)  # no sbatch
-        sbatch.write_text('#!/bin/sh\necho "$*" >> "$0.words"\necho 41\n')
+        sbatch.write_text("#!/bin/sh\necho 'invalid partition' >&2\nexit 1\n")
         sbatch.chmod(0o700)
-        self.study(*submit, env={"PATH": f"{self.folder}:{os.environ['PATH']}"})
-        array, merge = (self.folder / "sbatch.words").read_text().splitlines()
-        self.assertIn("--array=1-1 --time=60 --comment=a=b ", array)
-        self.assertIn("--dependency=afterany:41 --time=60 --comment=a=b ", merge)
+        told = modebank(*self.words(self.other, *submit), env=environment, status=1).stderr
+        self.assertIn("invalid partition", told)
+        self.study("--study.stage=submit", "--study.slurm_options=--array=0-5%2", env=environment, status=2)
+        sbatch.write_text('#!/bin/sh\nprintf "%s\\n" "$@" >> "$0.words"\necho Welcome to node 7\necho "Job 41;c2"\n')
+        self.study(*submit, env=environment)
+        array, merge = re.findall(r"(?s)--parsable\n.*?\.sh\n", (self.folder / "sbatch.words").read_text())
+        self.assertIn("--array=1-1\n--time=60\n--comment=a=b\n", array)
+        self.assertIn("--dependency=afterany:41\n--time=60\n--comment=a=b\n", merge)
+        for words in (array, merge):
+            self.assertIn("--output=" + str(self.other).replace("%", "%%"), words)
+            self.assertRegex(words, r"--job-name=[\w-]+\n")
         self.study("--study.stage", "merge", status=1)
         self.assertEqual(trials(self.other), [])  # nothing is made here
-        for script in (array, merge):
-            subprocess.run(["bash", script.split()[-1]], check=True, **QUIET)
+        for words in (array, merge):
+            subprocess.run(["bash", words.splitlines()[-1]], check=True, **QUIET)
         self.check()
+        for name in ("new\ntouch pwned", "back\\slash"):
+            self.other = self.folder / name
+            self.study(*submit, env=environment, status=2)
+            self.assertFalse(self.other.exists())
 
 
 if __name__ == "__main__":

@@ -1,8 +1,10 @@
 """The live filter says of each sample what `run` said: of lines and files, in Python, late and missing."""
 import csv
 import re
+import subprocess
 
-from program import ProgramTest, arrays, attributes, demo, learn, main, modebank, np, rows, slices
+from program import (PROGRAM, ProgramTest, arrays, attributes, demo, learn, main, modebank, np, rows, slices,
+                     write_runs)
 
 
 def columns(text):
@@ -15,7 +17,7 @@ def evaluated(archive, which, run):
     """What the archive says of a run, as columns of `track`."""
     at, said = slices(archive)[run], arrays(archive, f"/evaluation/{which}")
     found = {name: said[name] for name in ("nis", "log_density")}
-    for i, name in enumerate(attributes(archive, "/data")["state_names"].astype(str)):
+    for i, name in enumerate(np.char.decode(attributes(archive, "/data")["state_names"], "utf-8")):
         half = 1.959963984540054 * np.sqrt(said["innovation_covariance"][:, i, i])
         found |= {name: said["state"][:, i], name + "_sd": np.sqrt(said["covariance"][:, i, i]),
                   name + "_predicted": said["prediction"][:, i], name + "_lower": said["prediction"][:, i] - half,
@@ -28,10 +30,10 @@ class Track(ProgramTest):
     def track(self, archive, lines, *words, status=0):
         return modebank("track", archive, *words, input="\n".join([*lines, ""]), status=status)
 
-    def check(self, text, expected):
+    def check(self, text, expected, tolerance=1e-12):
         said = columns(text)
         for name, values in expected.items():
-            np.testing.assert_allclose(said[name], values, 1e-12, 1e-12, err_msg=name)
+            np.testing.assert_allclose(said[name], values, tolerance, tolerance, err_msg=name)
 
     def learn(self, *words, **options):
         """An archive of two small runs, and the lines of the held-out one."""
@@ -61,6 +63,86 @@ class Track(ProgramTest):
                     self.check(live, evaluated(archive, which, "01"))
         warming_up = columns(live)["warming_up"]
         self.assertEqual(np.flatnonzero(warming_up).tolist(), [*range(14)])  # ten after four lags
+
+    def rewritten(self, header, line, *words):
+        """The archive of the small runs with their rows in another form, and the lines of the held-out one."""
+        write_runs(self.folder)
+        for path in self.folder.glob("run_*.csv"):
+            rows = np.loadtxt(path, delimiter=",", skiprows=1)
+            path.write_text(header + "".join(line(*row) + "\n" for row in rows.tolist()), encoding="latin-1")
+        modebank("run", "test.ini", "--force", *words, cwd=self.folder)
+        return self.folder / "test.h5", (self.folder / "run_01.csv").read_text(encoding="latin-1")
+
+    def test_forms_that_run_reads(self):
+        """Stamps, dialects and derived channels, of lines and of files."""
+        comma = str.maketrans(",.", ";,")
+        for header, line, words in (
+                ("time,wz,left,right\n", lambda t, *v: "2024-05-01T23:59:{:06.3f}Z,{},{},{}".format(t, *v), ()),
+                ("time,wz,left,right\n", lambda t, *v: "{},{},{},{}".format(5000 + round(1000 * t), *v), ()),
+                ("secs,nsecs,wz,left,right\n", lambda t, *v: "{},{},{},{},{}".format(
+                    1_700_000_000 + int(t + 1e-6), round(t % 1 * 10) % 10 * 10**8, *v), ("--data.time=secs, nsecs",)),
+                ("time;wz;left;right\ns;rad/s;m/s;m/s\n",
+                 lambda *v: "{},{},{},{}".format(*v).translate(comma), ()),
+                ("", lambda *v: "{},{},{},{}".format(*v),
+                 ("--data.time=c1", "--data.state=c2", "--data.input=c3, c4")),
+                ('\ufeffright,note,"=a""b",time,left\r\n'.encode().decode("latin-1"),
+                 lambda t, w, *v: '{1},"one, ""two""",{2},{3},"{0}"\r'.format(*v, w, t), ('--data.state==a"b',)),
+                ("time,gr\xf6\xdfe,left,right\n", lambda *v: "{},{},{},{}".format(*v), ("--data.state=größe",)),
+                ("time,wz_deg,left,right\n", lambda t, w, *v: "{},{},{},{}".format(t, np.degrees(w), *v),
+                 ("--data.derive=turn = rad(wz_deg)", "--data.state=turn"))):
+            with self.subTest(header=header):
+                archive, text = self.rewritten(header, line, *words)
+                said = subprocess.run([PROGRAM, "track", archive], input=text.encode("latin-1"), capture_output=True,
+                                      check=True).stdout.decode()
+                expected = evaluated(archive, "bank", "01")
+                self.check(said, {name: expected[name] for name in ("nis", "log_density", "p1")})
+                np.testing.assert_allclose(np.diff(columns(said)["time"]), 0.1, 1e-5)
+                self.assertFalse(any(name.startswith("=") for name in columns(said)))
+                of_file = modebank("track", archive, "--data.inputs", "run_01.csv", cwd=self.folder).stdout
+                self.assertEqual(of_file, said)
+
+    def test_faster_logs_are_brought_to_the_models_rate(self):
+        """At 51.5 Hz; wz and left vibrate and are averaged, right is held and is picked."""
+        def faster(stamp):
+            return lambda t, w, left, right: "\n".join(
+                f"{stamp(s)},{w + 0.05 * np.sin(283 * s)},{left + 0.05 * np.sin(283 * s)},{right}"
+                for s in t + 0.0194 * np.arange(5))
+        for stamp, lag in (str, "0"), (str, "0.17"), (str, "-0.23"), ("2024-05-01T10:00:{:09.6f}Z".format, "0"):
+            with self.subTest(lag=lag, stamp=stamp):
+                archive, text = self.rewritten("time,wz,left,right\n", faster(stamp), "--data.rate_hz=10",
+                                               f"--data.lag_s={lag}")
+                self.check(self.track(archive, text.splitlines()).stdout, evaluated(archive, "bank", "01"), 1e-9)
+
+    def test_derivatives_go_on_from_line_to_line(self):
+        heading = np.cumsum(np.random.default_rng(1).normal(0, 50, 120)) % 360
+        archive, text = self.rewritten("time,heading,left,right\n",
+                                       lambda t, *v: "{},{},{},{}".format(t, heading[round(10 * t)], *v[1:]),
+                                       "--data.derive=angle = unwrap(rad(heading))", "--data.derive=turn = diff(angle)",
+                                       "--data.state=turn")
+        said, expected = columns(self.track(archive, text.splitlines()).stdout), evaluated(archive, "bank", "01")
+        np.testing.assert_allclose(said["turn_predicted"][20:], expected["turn_predicted"][20:], 1e-6, 1e-6)
+
+    def test_clocks(self):
+        archive, lines = self.learn()
+        plain, sample = self.track(archive, lines[:21]).stdout.splitlines(), "{},0.01,0.1,0.1".format
+        ahead = self.track(archive, [*lines[:11], sample(1.7e9), *lines[11:21]]).stdout.splitlines()
+        self.assertEqual(ahead[:11] + ahead[12:], plain)  # costs no more than its own sample
+        jumps = [sample(900), sample(900.1), sample(1.0), "1.1,,0.1,0.1", "1.4,0.01,,"]
+        said = columns(self.track(archive, [*lines[:11], *jumps]).stdout)
+        self.assertEqual(said["steps"][10:].tolist(), [0, 1, 0, 1, 3])
+        self.assertTrue(np.isnan(said["nis"][13]) and said["wz"][13] == said["wz_predicted"][13])
+        between = [line for row in lines[1:21] for line in [row, *(
+            f"{float(row.split(',')[0]) + 0.01 * i},{row.split(',', 1)[1]}" for i in range(1, 10))]]
+        fast = columns(self.track(archive, lines[:1] + between, "--data.rate_hz=10").stdout)
+        slow = columns(self.track(archive, lines[:21], "--data.rate_hz=10").stdout)
+        np.testing.assert_allclose(fast["wz"], slow["wz"], 1e-9, 1e-9)
+        self.assertIn("--data.rate_hz 10", self.track(archive, [*lines[:2], sample(0.01), sample(0.02)]).stderr)
+        jitter = [f"{0.1 * k + (0, 0.02, -0.01, 0.02, -0.02)[k % 5]},0.01,0.1,0.1" for k in range(30)]
+        done = self.track(archive, lines[:1] + jitter)
+        self.assertEqual((done.stdout.count("\n"), done.stderr), (31, ""))
+        week = [f"{hour % 24:02}:30:00.25,0.1,0,0" for hour in range(11, 168, 2)]
+        times = columns(self.track(archive, lines[:1] + week).stdout)["time"]
+        self.assertEqual(times.tolist(), [3600 * hour + 1800.25 for hour in range(11, 168, 2)])
 
     def test_python_filter(self):
         try:

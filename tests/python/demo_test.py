@@ -164,16 +164,6 @@ class Demo(unittest.TestCase):
                          **{"data.root": folder(), "archive.output": output})
         self.assertFalse(os.path.exists(output))
 
-    def test_what_a_callback_throws_ends_the_run(self):
-        def stop(line):
-            raise KeyboardInterrupt(line)
-
-        output = self.scratch.name + "/stopped.h5"
-        with self.assertRaises(KeyboardInterrupt):
-            modebank.run(SOURCE / "configs/demo.ini", progress=stop, **QUICK,
-                         **{"data.root": folder(), "archive.output": output})
-        self.assertFalse(os.path.exists(output))
-
 
 if __name__ == "__main__":
     warnings.simplefilter("ignore", UserWarning)  # warning on few candidates

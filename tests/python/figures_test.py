@@ -133,9 +133,6 @@ class Figures(unittest.TestCase):
         for name, colour in figures.FILTERS.items():
             self.assertEqual(palette["filters"][name], colour, name)
 
-    def test_values_find_their_place(self):
-        self.assertEqual([figures.position_of(value, ["full", "20"]) for value in ("full", 20, 20.0)], [0, 1, 1])
-
     def test_names_are_text(self):
         state = "_$\\frac{<w>$&%"
         runs = {name: [part.rename(columns={"wz": state}) for part in parts] for name, parts in frames().items()}

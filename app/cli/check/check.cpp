@@ -165,14 +165,14 @@ void check_lags(const CheckOptions& options, const Material& material, DataCheck
       std::all_of(check.runs.begin(), check.runs.end(), [](const RunReport& r) { return r.problem.empty(); });
   if (!check.has_lag) return;
   try {
-    check.lag = choose_lag(material.ordered, {options.data.lag_range_s, options.data.rate_hz});
+    check.lag = choose_lag(material.ordered, {.rate_hz = options.data.rate_hz});
   } catch (const DataError&) {  // there are too few data for a fit; find_unusable reports this
     check.has_lag = false;
     return;
   }
   tbb::parallel_for(std::size_t{0}, check.runs.size(), [&](std::size_t i) {
     const bool estimated = material.ordered[i].role == Role::train;
-    check.runs[i].lag = estimated ? check.lag.runs[i] : estimate_run(material.ordered[i], options.data.lag_range_s);
+    check.runs[i].lag = estimated ? check.lag.runs[i] : estimate_run(material.ordered[i], LagChoiceOptions{}.range_s);
   });
 }
 

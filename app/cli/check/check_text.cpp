@@ -101,11 +101,7 @@ std::string check_text(const DataCheck& check, const std::vector<std::string>& f
               "transitions; lag: dead\n  time of the inputs, + later\n\n",
               check.window_length);
   text += channel_table(check) + "\n";
-  if (check.has_lag) {
-    LagReport pooled = check.lag;
-    pooled.runs.clear();
-    text += lag_text(pooled, false);
-  }
+  if (check.has_lag) text += lag_text(check.lag, false);
   text += "\nfindings\n";
   for (const std::string& finding : findings) text += "- " + finding + "\n";
   if (findings.empty()) text += "- no finding\n";

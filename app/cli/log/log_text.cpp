@@ -86,26 +86,4 @@ std::string taken_text(const std::vector<FileSet>& sets, const std::vector<Surve
   return text;
 }
 
-std::vector<std::string> robot_advice(const Guess& guess, const Archive& archive) {
-  std::vector<std::string> advice;
-  if (guess.mounting)
-    advice.push_back(fmt::format("take {}{} as the yaw rate on the robot, too: its gyro does not stand upright",
-                                 guess.mounting->reversed ? "minus " : "", guess.mounting->up_rate));
-  if (!archive.lag || archive.lag->correction == LagCorrection::none || !archive.recording) return advice;
-  const double lag_s = archive.lag->lag.mean;
-  const std::string inputs = fmt::format("{}", fmt::join(names_of(archive.recording->inputs), ", ")),
-                    states = fmt::format("{}", fmt::join(names_of(archive.recording->states), ", "));
-  if (lag_s < 0.0)
-    advice.push_back(fmt::format(
-        "the stamps of {0} are {2:.3f} s late against those of {1}: `modebank track` waits for them, and a filter of "
-        "your own must delay {1} by {2:.3f} s; better, stamp {0} when they are measured",
-        inputs, states, -lag_s));
-  else
-    advice.push_back(fmt::format(
-        "{0} act {1:.3f} s after their stamps: `modebank track` holds them back, and a filter of your own must add "
-        "{1:.3f} s to these stamps",
-        inputs, lag_s));
-  return advice;
-}
-
 }  // namespace modebank::app

@@ -5,7 +5,6 @@
 
 #include "app/init/guess.hpp"
 #include "app/init/proposal.hpp"
-#include "io/archive/archive.hpp"
 
 namespace modebank::app {
 
@@ -13,9 +12,6 @@ namespace modebank::app {
 /// screen.
 std::string taken_text(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                        const Proposal& proposal);
-
-/// Sentences on the corrections of the log. A robot that runs the model live must make the same corrections.
-std::vector<std::string> robot_advice(const Guess& guess, const Archive& archive);
 
 /// A labelled paragraph, wrapped at the width of the terminal or of the first screen.
 std::string paragraph(const std::string& label, const std::string& text);

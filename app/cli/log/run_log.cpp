@@ -156,11 +156,8 @@ Result do_run_log(const CommandLine& line) {
   write_page_of(archive, outputs, line);
   explain_found(archive, configuration);
   replace_file(final_target(outputs.configuration), {configuration.text()});
-  const std::vector<std::string> robot = robot_advice(logs.guess, archive);
-  for (const std::string& advice : robot) result.text += paragraph("robot", advice);
   result.text += written_text(outputs);
   result.members.update(init_json(logs.surveyed, configuration.proposal()));
-  result.members["robot"] = robot;
   result.members["written"] = {outputs.configuration.string(), outputs.archive.string(), outputs.page.string()};
   return result;
 }

@@ -221,10 +221,6 @@ std::vector<Option> data_options() {
           .touch("when times jitter or values repeat, which `modebank check` shows", data, basic),
       lag_option().touch("auto, when states and inputs come from two instruments; a number, when you know it", data,
                          basic),
-      numeric("data.lag_range_s", above(0), "s",
-              "largest lag, of either sign, that data.lag_s = auto and `modebank check` search",
-              MODEBANK_FIELD(data.lag_range_s))
-          .touch("when a message says that the lag lies at the edge of the range", data),
       quantum_option().touch(
           "auto, when the finding says that measurements come in steps too coarse to compare densities", data),
       words("data.missing",

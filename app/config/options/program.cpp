@@ -36,10 +36,6 @@ std::vector<Option> report_options() {
               "the page",
               MODEBANK_FIELD(report.size_mb))
           .touch("larger, to show more samples of long runs; 8, to send the page by mail"),
-      numeric("report.runs", between(0, 10000), "",
-              "number of a study's best runs that get pages of their own, in a folder beside the study's page",
-              MODEBANK_FIELD(report.runs))
-          .touch("0, when the study's page is enough; more, to look into many runs"),
   };
 }
 

@@ -8,6 +8,13 @@ namespace {
 
 std::vector<Option> mode_parameters() {
   return {
+      numeric("system.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
+              MODEBANK_FIELD(simulate.rate_hz))
+          .touch("as in your logs"),
+      numeric("system.state_rate_hz", between(1e-6, 1e6), "Hz",
+              "rate of the states file; a multiple of rate_hz keeps every measurement",
+              MODEBANK_FIELD(simulate.state_rate_hz))
+          .touch("as in your logs; equal to rate_hz where both come together"),
       numeric("system.modes", any(), "", "parameters of each mode: [A B (c)] row by row, modes separated by |",
               MODEBANK_FIELD(simulate.system.modes))
           .touch("always"),
@@ -78,13 +85,6 @@ std::vector<Option> simulate_options() {
           .touch("more, for smaller standard errors; at least 8 for evidence", std::nullopt, basic),
       numeric("simulate.samples", between(2, 1e8), "", "samples per run", MODEBANK_FIELD(simulate.system.samples))
           .touch("more, when runs are too short for their modes", std::nullopt, basic),
-      numeric("simulate.rate_hz", between(1e-6, 1e6), "Hz", "rate of commands and of the inputs file",
-              MODEBANK_FIELD(simulate.rate_hz))
-          .touch("as in your logs"),
-      numeric("simulate.state_rate_hz", between(1e-6, 1e6), "Hz",
-              "rate of the states file; a multiple of rate_hz keeps every measurement",
-              MODEBANK_FIELD(simulate.state_rate_hz))
-          .touch("as in your logs; equal to rate_hz where both come together"),
   };
 }
 

@@ -7,7 +7,6 @@
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
 #include "app/report/page/assets.hpp"
-#include "app/report/page/matched_modes.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/paired_runs.hpp"
 #include "app/report/page/run_sections.hpp"
@@ -30,10 +29,8 @@ json configuration_differences(const Archive& first, const Archive& other) {
       return found == of.end() ? std::string() : found->second;
     };
     if (value(one) != value(two))
-      differences.push_back({{"key", option.key},
-                             {"values", {value(one), value(two)}},
-                             {"help", option.help},
-                             {"decides", option.stage.has_value()}});
+      differences.push_back(
+          {{"key", option.key}, {"values", {value(one), value(two)}}, {"decides", option.stage.has_value()}});
   }
   return differences;
 }
@@ -96,38 +93,13 @@ std::string gain_sentence(const PairedGain& gain) {
 /// Whether the bank of the other run predicts better than the bank of the first run, with the reason.
 json verdict_of(const Archive& first, const Archive& other) {
   const ArchiveGain found = gain_between(other, first);
-  json verdict = {{"runs", found.runs},
-                  {"gain", estimate(found.gain.gain, found.gain.standard_error)},
-                  {"margin", number(found.gain.margin)},
-                  {"told", found.gain.exceeds() || found.gain.falls_short()}};
+  json verdict = {{"runs", found.runs}, {"told", found.gain.exceeds() || found.gain.falls_short()}};
   if (found.runs == 0)
     verdict["text"] = fmt::format("A and B cannot be compared: {}.", found.difference);
   else
     verdict["text"] = fmt::format("On {} {} run{} that both have, {}", found.runs, words_for(judged_role(first)),
                                   found.runs == 1 ? "" : "s", gain_sentence(found.gain));
   return verdict;
-}
-
-json z_cells(const MatchedMode& pair) {
-  json cells = json::array();
-  for (Index i = 0; i < pair.z.size(); ++i) cells.push_back(number(pair.z(i), fmt::format("{:+.1f}", pair.z(i))));
-  return cells;
-}
-
-/// The modes of the other run beside those of the first run.
-json match_of(const Archive& first, const Archive& other) {
-  if (!first.bank || !other.bank)
-    return {{"difference", "not both have a bank"}, {"by_time", false}, {"modes", json::array()}};
-  const ModeMatch match = match_modes(*first.bank, *other.bank, time_in_common(first, other));
-  json modes = json::array();
-  for (const MatchedMode& pair : match.modes)
-    modes.push_back({{"first", pair.first},
-                     {"second", pair.second},
-                     {"distance", number(pair.z.size() ? pair.distance : NAN, fmt::format("{:.2g}", pair.distance))},
-                     {"shared", percent(pair.shared)},
-                     {"agree", pair.agree()},
-                     {"z", z_cells(pair)}});
-  return {{"difference", match.difference}, {"by_time", match.by_time}, {"modes", modes}};
 }
 
 json run_json(const Archive& archive, const std::string& name) {
@@ -143,7 +115,6 @@ Page compare_page(const Archive& first, const Archive& other, const std::string&
                {"same_data", first.provenance.data_hash == other.provenance.data_hash},
                {"differences", configuration_differences(first, other)},
                {"scores", scores_of(first, other)},
-               {"match", match_of(first, other)},
                {"runs", {run_json(first, name), run_json(other, other_name)}}};
   return page;
 }

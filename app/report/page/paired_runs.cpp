@@ -44,13 +44,6 @@ std::vector<std::pair<std::size_t, std::size_t>> common_runs(const Archive& one,
   return common;
 }
 
-Eigen::MatrixXd mode_probability(const FilterEvaluation& evaluation, std::size_t run) {
-  Eigen::MatrixXd probability;
-  evaluation.with_run(run, {"mode_probability"},
-                      [&](const RunEvaluation& said) { probability = said.mode_probability; });
-  return probability;
-}
-
 }  // namespace
 
 ArchiveGain gain_between(const Archive& better, const Archive& other) {
@@ -71,21 +64,6 @@ ArchiveGain gain_between(const Archive& better, const Archive& other) {
   else
     result.gain = paired_gain("", of_better, of_other);
   return result;
-}
-
-Eigen::MatrixXd time_in_common(const Archive& first, const Archive& second) {
-  Eigen::MatrixXd both, either;
-  for (const auto& [i, j] : common_runs(first, second)) {
-    const Eigen::MatrixXd a = mode_probability(*bank_of(first), i), b = mode_probability(*bank_of(second), j);
-    if (both.size() == 0) either = both = Eigen::MatrixXd::Zero(a.rows(), b.rows());
-    for (Index k = 0; k < a.cols(); ++k) {
-      if (!a.col(k).allFinite() || !b.col(k).allFinite()) continue;
-      const Eigen::MatrixXd of_a = a.col(k).replicate(1, b.rows()), of_b = b.col(k).transpose().replicate(a.rows(), 1);
-      both += of_a.cwiseMin(of_b);
-      either += of_a.cwiseMax(of_b);
-    }
-  }
-  return (either.array() > 0.0).select(both.array() / either.array(), 0.0);
 }
 
 std::string gain_words(const PairedGain& gain) {

@@ -107,9 +107,7 @@ void for_each_filter(const Archive& archive, std::size_t i, const Detail& detail
 json run_signals(const Archive& archive, std::size_t i, PageArrays& arrays, const Detail& detail) {
   const Trajectory& run = archive.recording->runs[i];
   json entry = {{"name", run.run},
-                {"position", i},
                 {"role", name_of(run.role)},
-                {"lag_s", run.lag_s},
                 {"time", time_axis(arrays, run.time_s, detail.finest)},
                 {"state", rows_of(arrays, run.state, detail.finest)},
                 {"input", rows_of(arrays, run.input, detail.finest)},
@@ -172,22 +170,20 @@ namespace {
 
 /// Returns nullopt if the arrays exceed the size limit.
 std::optional<json> runs_within(const Archive& archive, PageArrays& arrays, const Detail& detail, std::size_t most) {
-  json runs = json::array(), names = json::array();
+  json runs = json::array();
   const std::vector<std::size_t> drawn = drawn_runs(*archive.recording);
   for (const std::size_t i : drawn) {
     runs.push_back(run_signals(archive, i, arrays, detail));
     if (arrays.bytes() > most) return std::nullopt;
   }
-  for (const Trajectory& run : archive.recording->runs) names.push_back(run.run);
   constexpr double outer = 0.5 * (1.0 - drawn_level);
   const auto n_y = static_cast<double>(archive.recording->state_count());
   return json{{"states", channels_of(archive.recording->states)},
               {"inputs", channels_of(archive.recording->inputs)},
-              {"note", detail_note(detail, drawn.size(), names.size())},
+              {"note", detail_note(detail, drawn.size(), archive.recording->runs.size())},
               {"level", drawn_level},
               {"outlier_level", outlier_level},
               {"nis_bounds", {chi_square_quantile(outer, n_y), chi_square_quantile(1.0 - outer, n_y)}},
-              {"names", names},
               {"runs", runs}};
 }
 

@@ -17,8 +17,6 @@ using nlohmann::json;
 
 /// largest number of drawn windows; more points would hide each other, so only every second, third, ... window is drawn
 constexpr Index most_windows = 100'000;
-/// largest number of values in all covariances; above it, no ellipses are drawn
-constexpr Index most_covariances = 2'000'000;
 
 /// Names on the page: labels for parameters, words for noise, a note for features of one lag.
 std::vector<std::string> with_labels(std::vector<std::string> features, const Archive& archive) {
@@ -48,19 +46,6 @@ std::vector<Index> default_axes(const WindowFits& fits, bool of_parameters, Inde
   if (of_parameters && fits.model_parameters.empty() && fits.structure.inputs >= 2) chosen = {0, inputs, inputs + 1};
   chosen.resize(static_cast<std::size_t>(std::min<Index>(axes, 3)));
   return chosen;
-}
-
-/// The covariance of each drawn window, as its lower triangle row by row.
-json covariances_of(PageArrays& arrays, const WindowFits& fits, const std::vector<Index>& drawn) {
-  const Index p = fits.parameter_count(), count = static_cast<Index>(drawn.size());
-  if (count * p * (p + 1) / 2 > most_covariances) return nullptr;
-  json entries = json::array();
-  for (Index i = 0; i < p; ++i)
-    for (Index j = 0; j <= i; ++j) {
-      const Eigen::VectorXd entry = fits.covariance(i + j * p, drawn).transpose();
-      entries.push_back(arrays.add(entry));
-    }
-  return entries;
 }
 
 json rows_of_matrix(const Eigen::MatrixXd& matrix) {
@@ -165,23 +150,6 @@ FeatureCloud cloud_of(const Archive& archive) {
   return cloud;
 }
 
-/// Adds the run and the first and last time of each drawn window.
-void add_places(json& section, PageArrays& arrays, const Archive& archive, const std::vector<Index>& drawn) {
-  const WindowFits& fits = *archive.windows;
-  std::vector<std::int32_t> run;
-  Eigen::VectorXd begin(static_cast<Index>(drawn.size())), end = begin;
-  for (std::size_t i = 0; i < drawn.size(); ++i) {
-    const Window& window = fits.windows[static_cast<std::size_t>(drawn[i])];
-    const Trajectory& trajectory = archive.recording->runs[static_cast<std::size_t>(window.run)];
-    run.push_back(static_cast<std::int32_t>(window.run));
-    begin(static_cast<Index>(i)) = trajectory.time_s(window.start);
-    end(static_cast<Index>(i)) = trajectory.time_s(window.start + fits.length);
-  }
-  section["run"] = arrays.add(run);
-  section["begin"] = arrays.add_exact(begin);
-  section["end"] = arrays.add_exact(end);
-}
-
 }  // namespace
 
 nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
@@ -197,7 +165,6 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
   }
   json section = {
       {"count", count(fits.count())},
-      {"drawn", count(static_cast<long long>(drawn.windows.size()))},
       {"step", drawn.step},
       {"length", fits.length},
       {"model", fits.model},
@@ -205,11 +172,9 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
       {"axes", axes_of(with_labels(cloud.names, archive), feature_units(cloud.names, fits, Units(*archive.recording)))},
       {"default_axes", default_axes(fits, of_parameters, cloud.points.rows())},
       {"values", values},
-      {"covariance", of_parameters ? covariances_of(arrays, fits, drawn.windows) : json()},
       {"refined", archive.unrefined.has_value()},
       {"level", drawn_level},
       {"limit2", chi_square_quantile(drawn_level, 2.0)}};
-  add_places(section, arrays, archive, drawn.windows);
   if (archive.mixture) {
     section["label"] = labels_of(arrays, archive.mixture->labels, drawn.windows);
     section["components"] = components_of(archive);

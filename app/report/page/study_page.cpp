@@ -93,7 +93,6 @@ json rows_of(const StudyFile& file, const StudyTable& table, const std::vector<T
                     {"message", row.message},
                     {"key", row.key},
                     {"seed", std::to_string(row.seed)},
-                    {"repeat", row.repeat},
                     {"varied", row.varied},
                     {"cells", cells_of(file, table, i)},
                     {"page", places[i].page},

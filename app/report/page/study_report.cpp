@@ -52,9 +52,10 @@ std::vector<TrialPlace> archives_of(const StudyTable& table, const fs::path& fol
 void write_run_pages(const StudyTable& table, const fs::path& page, const ReportConfig& options,
                      std::vector<TrialPlace>& places, Written& written) {
   const fs::path folder = page.parent_path() / (page.stem().string() + "_runs");
+  constexpr Index most_pages = 10;
   Index pages = 0;
   for (const std::size_t row : ranked_rows(table)) {
-    if (pages == options.runs) break;
+    if (pages == most_pages) break;
     if (places[row].archive.empty()) continue;
     const fs::path archive = places[row].archive, file = folder / (table.rows[row].key + ".html");
     const Page run = run_page(read_archive(archive, Evaluations::in_file), archive.filename().string(), options);

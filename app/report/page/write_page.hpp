@@ -44,8 +44,8 @@ FoundStudy find_study(const OpenArchive& file);
 void report_study(const FoundStudy& study, const std::filesystem::path& page, const ReportConfig& options,
                   Written& written);
 
-/// The page that compares two archives. It states which archive predicts better and lists the different settings. It
-/// shows the scores, and the modes beside the matching modes of the first archive.
+/// The page that compares two archives. It states which archive predicts better, and lists the
+/// scores, the different settings, and the modes of both.
 void report_comparison(const std::filesystem::path& file, const std::filesystem::path& other,
                        const std::filesystem::path& page, Written& written);
 

@@ -23,34 +23,24 @@ std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& an
   using E = MainEffect;
   using I = KeyInfluence;
   using B = BestSetting;
-  using S = RepeatSpread;
-  std::vector<NamedTable> tables{
-      {"main_effects",
-       {column_from("key", answers.main_effects, [](const E& e) { return e.key; }),
-        column_from("value", answers.main_effects, [](const E& e) { return e.value; }),
-        column_from("score", answers.main_effects, [](const E& e) { return e.score; }),
-        column_from("trials", answers.main_effects, [](const E& e) { return e.trials; }),
-        column_from("mean", answers.main_effects, [](const E& e) { return e.mean; }),
-        column_from("sd", answers.main_effects, [](const E& e) { return e.sd; }),
-        column_from("best", answers.main_effects, [](const E& e) { return e.best; })}},
-      {"influence",
-       {column_from("key", answers.influences, [](const I& i) { return i.key; }),
-        column_from("score", answers.influences, [](const I& i) { return i.score; }),
-        column_from("share", answers.influences, [](const I& i) { return i.share; })}},
-      {"best",
-       {column_from("score", answers.best, [](const B& b) { return b.score; }),
-        column_from("better", answers.best, [](const B& b) { return b.goal.text(); }),
-        column_from("value", answers.best, [](const B& b) { return b.value; }),
-        column_from("repeats", answers.best, [](const B& b) { return b.repeats; }),
-        column_from("trial", answers.best, trial_of), column_from("setting", answers.best, setting_of)}}};
-  if (!answers.spread.empty())
-    tables.push_back({"spread",
-                      {column_from("score", answers.spread, [](const S& s) { return s.score; }),
-                       column_from("settings", answers.spread, [](const S& s) { return s.settings; }),
-                       column_from("sd", answers.spread, [](const S& s) { return s.sd; }),
-                       column_from("largest_sd", answers.spread, [](const S& s) { return s.largest_sd; }),
-                       column_from("between_sd", answers.spread, [](const S& s) { return s.between_sd; })}});
-  return tables;
+  return {{"main_effects",
+           {column_from("key", answers.main_effects, [](const E& e) { return e.key; }),
+            column_from("value", answers.main_effects, [](const E& e) { return e.value; }),
+            column_from("score", answers.main_effects, [](const E& e) { return e.score; }),
+            column_from("trials", answers.main_effects, [](const E& e) { return e.trials; }),
+            column_from("mean", answers.main_effects, [](const E& e) { return e.mean; }),
+            column_from("sd", answers.main_effects, [](const E& e) { return e.sd; }),
+            column_from("best", answers.main_effects, [](const E& e) { return e.best; })}},
+          {"influence",
+           {column_from("key", answers.influences, [](const I& i) { return i.key; }),
+            column_from("score", answers.influences, [](const I& i) { return i.score; }),
+            column_from("share", answers.influences, [](const I& i) { return i.share; })}},
+          {"best",
+           {column_from("score", answers.best, [](const B& b) { return b.score; }),
+            column_from("better", answers.best, [](const B& b) { return b.goal.text(); }),
+            column_from("value", answers.best, [](const B& b) { return b.value; }),
+            column_from("repeats", answers.best, [](const B& b) { return b.repeats; }),
+            column_from("trial", answers.best, trial_of), column_from("setting", answers.best, setting_of)}}};
 }
 
 }  // namespace modebank::app

@@ -9,8 +9,8 @@
 
 namespace modebank::app {
 
-/// The answers as tables of /answers in study.h5: main_effects, influence, best and, if there are repeats,
-/// spread. The column `trial` contains the keys of trials.
+/// The answers as tables of /answers in study.h5: main_effects, influence and best. The column
+/// `trial` contains the keys of trials.
 std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& answers);
 
 }  // namespace modebank::app

@@ -139,19 +139,6 @@ std::optional<BestSetting> best_setting(const StudyTable& table, const Settings&
   return best;
 }
 
-std::optional<RepeatSpread> spread_of(const StudyTable& table, const Settings& settings, std::size_t score) {
-  std::vector<double> variances, means;
-  for (const auto& rows : settings) {
-    const std::vector<double> values = values_of(table, rows, score);
-    if (values.empty()) continue;
-    means.push_back(mean_of(values));
-    if (values.size() > 1) variances.push_back(variance_of(values));
-  }
-  if (variances.empty()) return {};
-  return RepeatSpread{table.score_names[score], static_cast<int>(variances.size()), std::sqrt(mean_of(variances)),
-                      std::sqrt(*std::max_element(variances.begin(), variances.end())), std::sqrt(variance_of(means))};
-}
-
 std::string headline_of(const StudyTable& table) {
   for (const char* name : {"bank_test_log_score", "bank_train_log_score"})
     if (const auto column = column_of(table, name))
@@ -175,7 +162,6 @@ Answers answer(const StudyTable& table) {
     const std::optional<ScoreGoal> goal = goal_in(table, score);
     if (!goal) continue;
     if (const auto best = best_setting(table, settings, score, *goal)) answers.best.push_back(*best);
-    if (const auto spread = spread_of(table, settings, score)) answers.spread.push_back(*spread);
   }
   return answers;
 }

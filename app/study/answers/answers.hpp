@@ -38,22 +38,12 @@ struct BestSetting {
   std::size_t row = 0;  ///< row of the first finished repeat
 };
 
-/// Standard deviation between the repeats of a setting, and between settings.
-struct RepeatSpread {
-  std::string score;
-  int settings = 0;         ///< number of settings with at least two finished repeats
-  double sd = 0.0;          ///< root of the mean variance within settings
-  double largest_sd = 0.0;  ///< largest standard deviation within a setting
-  double between_sd = 0.0;  ///< standard deviation between the means of the settings; NaN for a single setting
-};
-
 struct Answers {
   std::string headline;  ///< score in the printed tables: the bank's held-out log score if it exists, else its training
                          ///< log score
   std::vector<MainEffect> main_effects;
   std::vector<KeyInfluence> influences;
   std::vector<BestSetting> best;
-  std::vector<RepeatSpread> spread;  ///< empty if there are no repeats
 };
 
 Answers answer(const StudyTable& table);

@@ -28,13 +28,12 @@ std::string list_of(const StudyTable& table, TrialStatus status) {
 
 }  // namespace
 
-std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std::int64_t repeats) {
+std::string plan_text(const StudyPlan& plan, std::int64_t repeats) {
   std::size_t runs = 0, dropped = 0;
   for (const TrialRow& row : plan.table.rows) ++(row.status == TrialStatus::dropped ? dropped : runs);
   std::string text = fmt::format("plan      {} runs", runs);
   if (repeats > 1) text += fmt::format(" ({} repeats of each point)", repeats);
-  text += fmt::format(": {} fits of the windows, {} mixtures, {} banks\n", distinct.windows, distinct.mixtures,
-                      distinct.banks);
+  text += "\n";
   if (plan.repeated_points > 0)
     text += fmt::format("          {} points are equal to an earlier one and were left out\n", plan.repeated_points);
   if (dropped > 0) text += fmt::format("          {} points are not valid configurations and were dropped:\n", dropped);

@@ -7,8 +7,8 @@
 
 namespace modebank::app {
 
-/// Text with the number of runs, the dropped points with reasons, and the stages that runs share.
-std::string plan_text(const StudyPlan& plan, const DistinctStages& distinct, std::int64_t repeats);
+/// Text with the number of runs, and the dropped points with reasons.
+std::string plan_text(const StudyPlan& plan, std::int64_t repeats);
 /// Number of runs by status, then every failed and every missing run.
 std::string table_text(const StudyTable& table, const TrialStore& store);
 

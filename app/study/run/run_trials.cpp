@@ -66,10 +66,7 @@ std::optional<TrialReport> left_before(const TrialStore& store, const TrialStore
     const std::vector<std::string> problems = store.problems(row.key);
     // If a process was killed just after it wrote the archive, its claim still exists. Taking the claim removes it.
     if (problems.empty() && there.claims.count(row.key) > 0) static_cast<void>(Claim::take(store.claim(row.key)));
-    if (problems.empty())
-      return TrialReport{.row = place,
-                         .outcome = TrialOutcome::present,
-                         .log_score = headline_score(read_trial_scores(store.archive(row.key)).pooled)};
+    if (problems.empty()) return TrialReport{.row = place, .outcome = TrialOutcome::present};
     spdlog::warn("{}: {}; computed again", store.archive(row.key).string(), problems.front());
     const std::optional<Claim> mine = Claim::take(store.claim(row.key));
     if (mine) std::filesystem::remove(store.archive(row.key));

@@ -19,10 +19,6 @@ StudyProgress::~StudyProgress() {
 void StudyProgress::note(const TrialRow& row, const TrialReport& report) {
   if (report.outcome == TrialOutcome::computed) ++computed_;
   if (report.outcome == TrialOutcome::failed) ++failed_;
-  if (report.log_score > best_) {
-    best_ = report.log_score;
-    best_run_ = describe_trial(varied_keys_, row);
-  }
   if (report.message.empty()) return;
   if (line_open_) say("\n");
   line_open_ = false;
@@ -52,7 +48,6 @@ std::string StudyProgress::line(std::size_t finished, std::size_t all) const {
     text += ", " + rate_text(rate);
     if (finished < all) text += fmt::format(", {} left", duration_text(static_cast<double>(all - finished) / rate));
   }
-  if (!best_run_.empty()) text += fmt::format(", best log score {:.4f} ({})", best_, best_run_);
   return text;
 }
 

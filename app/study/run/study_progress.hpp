@@ -1,7 +1,6 @@
 #pragma once
 
 #include <chrono>
-#include <limits>
 #include <string>
 #include <vector>
 
@@ -30,8 +29,6 @@ class StudyProgress {
   Clock::time_point start_ = Clock::now(), told_ = start_;
   bool line_open_ = false;
   std::size_t computed_ = 0, failed_ = 0;
-  double best_ = -std::numeric_limits<double>::infinity();
-  std::string best_run_;
 };
 
 /// The varied values as text for messages: "mixture.components = 9, bank.stay = 0.95".

@@ -104,7 +104,7 @@ class Worker {
     }
     try {
       if (archive)
-        made.log_score = write(trial, config, *archive);
+        write(trial, config, *archive);
       else
         store_.record_failure(trial.key, made.message);
     } catch (const std::exception& error) {
@@ -113,14 +113,13 @@ class Worker {
     return made;
   }
 
-  double write(const TrialRow& trial, const Config& config, const Archive& archive) const {
+  void write(const TrialRow& trial, const Config& config, const Archive& archive) const {
     if (trial_key(config, archive.provenance.data_hash, task_.version) != trial.key)
       throw DataError("the data have changed since the plan was made; start the study again to see which file");
     // Another process may have written the archive first. That archive is kept, because other processes may be reading
     // it.
     if (!store_.has_archive(trial.key)) write_archive(store_.archive(trial.key), archive);
     store_.forget_failure(trial.key);
-    return headline_score(pooled_scores(archive.summary, names_of(archive.recording->states)));
   }
 
   const WorkerTask& task_;
@@ -144,15 +143,6 @@ std::string read_input() {
 }
 
 }  // namespace
-
-double headline_score(const std::vector<std::pair<std::string, double>>& scores) {
-  double score = std::numeric_limits<double>::quiet_NaN();
-  for (const char* name : {"bank_train_log_score", "bank_test_log_score"})  // the last name decides: the held-out
-                                                                            // score, if it exists
-    for (const auto& [key, value] : scores)
-      if (key == name) score = value;
-  return score;
-}
 
 std::string pack_task(const WorkerTask& task) {
   json rows = json::array();
@@ -190,17 +180,14 @@ WorkerTask unpack_task(const std::string& bytes) {
 }
 
 std::string pack_report(const TrialReport& report) {
-  return json::array({report.row, static_cast<int>(report.outcome), report.message, report.seconds,
-                      report.stage_seconds, report.log_score})
+  return json::array(
+             {report.row, static_cast<int>(report.outcome), report.message, report.seconds, report.stage_seconds})
       .dump(-1, ' ', true, json::error_handler_t::replace);
 }
 
 TrialReport unpack_report(const std::string& line) {
   const json packed = json::parse(line);
-  const json& score = packed.at(5);
-  return {packed.at(0), static_cast<TrialOutcome>(packed.at(1).get<int>()),
-          packed.at(2), packed.at(3),
-          packed.at(4), score.is_null() ? std::numeric_limits<double>::quiet_NaN() : score.get<double>()};
+  return {packed.at(0), static_cast<TrialOutcome>(packed.at(1).get<int>()), packed.at(2), packed.at(3), packed.at(4)};
 }
 
 int run_study_worker(int argc, char** argv) try {

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -22,12 +21,7 @@ struct TrialReport {
   std::string message = {};  ///< reason for a failure, or fault of an existing archive
   double seconds = 0.0;
   std::array<double, stage_count> stage_seconds = {};
-  /// The bank's log score on held-out runs, or on training runs if none is held out. NaN without a score.
-  double log_score = std::numeric_limits<double>::quiet_NaN();
 };
-
-/// The log score that the progress line shows.
-double headline_score(const std::vector<std::pair<std::string, double>>& scores);
 
 /// The work that the parent process gives to a worker.
 struct WorkerTask {

@@ -16,7 +16,6 @@ constexpr std::array<Stage, 3> grouped{Stage::windows, Stage::mixture, Stage::ba
 class Numbering {
  public:
   std::size_t of(const std::string& text) { return numbers_.try_emplace(text, numbers_.size()).first->second; }
-  std::size_t count() const { return numbers_.size(); }
 
  private:
   std::map<std::string, std::size_t> numbers_;
@@ -27,7 +26,8 @@ struct PlacedTrial {
   std::size_t row;
 };
 
-std::vector<PlacedTrial> place_trials(const Config& study, const StudyPlan& plan, std::array<Numbering, 3>& numbers) {
+std::vector<PlacedTrial> place_trials(const Config& study, const StudyPlan& plan) {
+  std::array<Numbering, 3> numbers;
   std::vector<PlacedTrial> trials;
   for (std::size_t row = 0; row < plan.table.rows.size(); ++row) {
     if (plan.table.rows[row].status == TrialStatus::dropped) continue;
@@ -43,8 +43,7 @@ std::vector<PlacedTrial> place_trials(const Config& study, const StudyPlan& plan
 }  // namespace
 
 TrialGroups group_trials(const Config& study, const StudyPlan& plan) {
-  std::array<Numbering, 3> numbers;
-  std::vector<PlacedTrial> trials = place_trials(study, plan, numbers);
+  std::vector<PlacedTrial> trials = place_trials(study, plan);
   std::stable_sort(trials.begin(), trials.end(),
                    [](const PlacedTrial& a, const PlacedTrial& b) { return a.stages < b.stages; });
   TrialGroups groups;
@@ -55,12 +54,6 @@ TrialGroups group_trials(const Config& study, const StudyPlan& plan) {
     last = &trial;
   }
   return groups;
-}
-
-DistinctStages count_stages(const Config& study, const StudyPlan& plan) {
-  std::array<Numbering, 3> numbers;
-  place_trials(study, plan, numbers);
-  return {numbers[0].count(), numbers[1].count(), numbers[2].count()};
 }
 
 }  // namespace modebank::app

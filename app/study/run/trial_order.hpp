@@ -12,10 +12,4 @@ using TrialGroups = std::vector<std::vector<std::size_t>>;
 
 TrialGroups group_trials(const Config& study, const StudyPlan& plan);
 
-/// Numbers of distinct windows, mixtures and banks among the trials.
-struct DistinctStages {
-  std::size_t windows = 0, mixtures = 0, banks = 0;
-};
-DistinctStages count_stages(const Config& study, const StudyPlan& plan);
-
 }  // namespace modebank::app

@@ -61,8 +61,7 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return found == finding.gains.end() ? nullptr : &*found;
 }
 
-/// Finds the simplest competitor that is as good as the best competitor and as the bank. Also returns the loss of this
-/// simplest competitor against the best one.
+/// Finds the simplest competitor that is as good as the best competitor and as the bank.
 void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
   const Densities* leader = named(competitors, finding.best_competitor);
   for (const char* name : competitor_names) {
@@ -72,7 +71,6 @@ void set_better_description(const std::vector<Densities>& competitors, Finding& 
     const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);
     if (!is_as_good(*gain_over(finding, name)) || !is_as_good(loss)) continue;
     finding.better_description = name;
-    finding.description_loss = loss.gain;
     return;
   }
   const PairedGain* over = gain_over(finding, finding.best_competitor);
@@ -139,25 +137,6 @@ Description description_of(const Finding& finding, const Bank& bank) {
   if (simpler.empty() && finding.answer != Answer::one_mode) return Description::none;
   if (simpler == "nonlinear") return Description::one_nonlinear_motion;
   return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
-}
-
-/// Gains over one linear motion: of several modes, and of one nonlinear motion. Set if both gains count and one of the
-/// two describes the runs.
-void set_gains_over_linear(const std::vector<Densities>& competitors, Finding& finding) {
-  const Densities* bent = named(competitors, "nonlinear");
-  const bool one_of_both =
-      finding.description == Description::several_modes || finding.description == Description::one_nonlinear_motion;
-  if (!bent || !one_of_both) return;
-  const PairedGain* over = nullptr;  // the bank gains less over the better of the two
-  for (const char* name : {"baseline", "noise_only"})
-    if (const PairedGain* gain = gain_over(finding, name); gain && (!over || gain->gain < over->gain)) over = gain;
-  if (!over || !is_beaten(*over)) return;
-  const PairedGain of_bend =
-      paired_gain(over->competitor, bent->of_runs, named(competitors, over->competitor)->of_runs);
-  if (!is_beaten(of_bend)) return;
-  finding.over_linear = over->competitor;
-  finding.bank_over_linear = over->gain;
-  finding.nonlinear_over_linear = of_bend.gain;
 }
 
 /// Whether the errors of one linear model are only the rounding of the data.
@@ -306,7 +285,6 @@ Finding judge_modes(const FindingInputs& in) {
       finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
   if (densities_tell && !beats_the_best(finding)) set_better_description(in.competitors, finding);
   finding.description = description_of(finding, in.bank);
-  set_gains_over_linear(in.competitors, finding);
   if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;
 }

@@ -125,13 +125,6 @@ struct Finding {
   double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN if unknown
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs in place of modes; empty if there is none
-  double description_loss = 0.0;   ///< loss of better_description against best_competitor [nats/sample]
-
-  /// The better one of the competitors baseline and noise_only. Set only if several modes or one nonlinear motion
-  /// describe the runs, and both descriptions are better than this competitor; else empty. (Modes that switch by state
-  /// and input are also a nonlinear motion.)
-  std::string over_linear;
-  double bank_over_linear = 0.0, nonlinear_over_linear = 0.0;  ///< [nats/sample]
   std::vector<BetterMean> better_means;
   std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model; empty if the model
                                                              ///< leaves noise

@@ -2,8 +2,6 @@
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
-#include <nlohmann/json.hpp>
-
 #include "app/chain/chain.hpp"
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
@@ -17,13 +15,6 @@ namespace modebank::test {
 namespace {
 
 class StoredStages : public CliTest {};
-
-TEST_F(StoredStages, NumbersAreTheSameForAnyThreadCount) {
-  ASSERT_EQ(run({"--job.threads", "1"}).status, 0);
-  const std::string one = all_stages(archive());
-  ASSERT_EQ(run({"--job.threads", "2"}).status, 0);
-  EXPECT_EQ(all_stages(archive()), one);
-}
 
 /// The archive of `run` if it learns from `transitions` training transitions. 0 means all.
 Archive learned_from(const std::string& config, Index transitions, std::size_t threads) {
@@ -66,16 +57,6 @@ TEST_F(StoredStages, EvaluationsWrittenAsTheyAreMadeAreTheSame) {
   EXPECT_EQ(all_stages(streamed), all_stages(archive()));
 }
 
-TEST_F(StoredStages, StoredConfigurationReproducesTheArchive) {
-  ASSERT_EQ(run().status, 0);
-  const Archive first = read_archive(archive());
-  const std::string numbers = all_stages(archive());
-  write("test.ini", first.config);
-  ASSERT_EQ(modebank({"run", config()}).status, 0);
-  EXPECT_EQ(all_stages(archive()), numbers);
-  EXPECT_EQ(read_archive(archive()).provenance.config_hash, first.provenance.config_hash);
-}
-
 TEST_F(StoredStages, StoredBankGivesBitIdenticalScores) {
   ASSERT_EQ(run().status, 0);
   const std::string again = file("again.h5").string();
@@ -114,17 +95,6 @@ TEST_F(StoredStages, StagesUntilOneGiveWhatRunGives) {
     EXPECT_EQ(modebank({"run", config(), "--until", until, "--archive.output", archive()}).status, 1)
         << "would replace the whole run's archive";
   }
-}
-
-TEST_F(StoredStages, DamagedBanksAreNotRun) {
-  ASSERT_EQ(run().status, 0);
-  std::string bytes = read_file(archive());
-  bytes[bytes.size() - 9] = static_cast<char>(bytes[bytes.size() - 9] ^ 1);
-  write("damaged.h5", bytes);
-  const ProgramResult result = modebank(
-      {"run", config(), "--archive.bank", file("damaged.h5").string(), "--archive.output", file("again.h5").string()});
-  EXPECT_EQ(result.status, 1);
-  EXPECT_THAT(result.err, ::testing::HasSubstr("SHA-256"));
 }
 
 TEST_F(StoredStages, AStoredBankLeavesItsTraceAndIsNotHeldOutOnItsTrainingRuns) {

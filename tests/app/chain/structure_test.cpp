@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
 
 #include "app/config/config_file.hpp"
@@ -83,17 +82,6 @@ TEST_F(StructureOfRuns, KeepsTheNumbersThatAreGiven) {
     EXPECT_EQ(s.input_delay, 2);
   }
   EXPECT_THAT(made.config, AllOf(HasSubstr("state_lags = 2"), HasSubstr("input_lags = auto")));
-}
-
-TEST_F(StructureOfRuns, IsRefusedWhereThereAreNoLags) {
-  for (const char* model : {"linear", "icr", "slip"}) {
-    const ProgramResult result = run({"--window.model", model, "--window.state_lags", "auto"});
-    EXPECT_EQ(result.status, 2);
-    EXPECT_THAT(result.err, HasSubstr(std::string("auto need window.model = varx or auto, not ") + model));
-  }
-  EXPECT_THAT(run_automatic({"--window.prior", "1, 2"}).err, HasSubstr("give one value for all"));
-  EXPECT_THAT(run({"--window.model", "varx", "--window.state_lags", "automatic"}).err, HasSubstr("1 to 100 or auto"));
-  EXPECT_EQ(run({"--window.model", "varx", "--window.input_lags", "0"}).status, 2);
 }
 
 /// One state that switches between two motions, logged about other zeros of state and input.

@@ -70,11 +70,6 @@ TEST_F(ClocksAndNumbers, Finding_D7_AValueBelowTheLimitIsScored) {
     }
 }
 
-TEST_F(ClocksAndNumbers, Finding_D8_AConstantHeldOutStateIsJudged) {
-  change("run_01.csv", [](int, Row& row) { row[1] = "0.3"; });
-  EXPECT_EQ(run().status, 0);
-}
-
 TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   change_both([](int, Row& row) { row[2] = "0"; });
   const ProgramResult result = run();
@@ -109,17 +104,6 @@ TEST_F(ClocksAndNumbers, Finding_D9_AZeroInputLeavesTheOthersTheirErrors) {
   EXPECT_THAT(checked.out + checked.err, Not(HasSubstr("nan")));
 }
 
-TEST_F(ClocksAndNumbers, Finding_D9_CollinearInputsLeaveTheStateItsErrors) {
-  change_both([](int, Row& row) { row[3] = row[2]; });
-  const ProgramResult result = run();
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.err, HasSubstr("the effect of left, right, which are zero or sums of multiples of each other"));
-  const VectorXd variance = read_archive(archive()).windows->global.covariance.diagonal();
-  EXPECT_GT(variance(0), 0.0);
-  EXPECT_TRUE(std::isnan(variance(1)) && std::isnan(variance(2)));
-  EXPECT_THAT(check().out, Not(HasSubstr("nan")));
-}
-
 /// If an input equals the state, the decay and all gains are unidentifiable.
 TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
   change_both([](int, Row& row) { row[3] = row[1]; });
@@ -131,40 +115,6 @@ TEST_F(ClocksAndNumbers, Finding_D9_AnOpenStateLeavesNoTimeConstantAndNoGain) {
     for (std::size_t i = 3; i < row.cells.size(); ++i) EXPECT_EQ(row.cells[i], "not identifiable");
   }
   EXPECT_THAT(check().out, HasSubstr("the effect of the state wz, right, which are zero or sums of multiples"));
-}
-
-/// Half of this period would need a larger rate than data.rate_hz allows.
-TEST_F(ClocksAndNumbers, AFasterRateThanAnyIsNotTried) {
-  change_both([](int line, Row& row) { row[0] = std::to_string(line) + "e-8"; });
-  const ProgramResult result = check();
-  EXPECT_EQ(result.status, 0) << result.err;
-}
-
-TEST_F(ClocksAndNumbers, Finding_D16_AFewOutliersAndThoseHeldOutAreNamed) {
-  change("run_00.csv", [](int line, Row& row) {
-    if (line % 20 == 0 && line < 80) row[1] = line == 40 ? "-1.5e5" : "1e5";
-  });
-  change("run_01.csv", [](int line, Row& row) { row[1] = line == 42 ? "1e6" : row[1]; });
-  const ProgramResult result = run({"--bank.refine", "none"});
-  EXPECT_THAT(result.err, HasSubstr("run_00.csv:40: run \"00\": wz = -150000 and 2 more hold 100 % of the variance"));
-  EXPECT_THAT(result.err,
-              HasSubstr("run_01.csv:42: run \"01\": wz = 1e+06 holds 100 % of the variance of wz in the held-out "
-                        "runs, so it dominates scores and errors"));
-}
-
-TEST_F(ClocksAndNumbers, AColumnWithoutAValueIsNamed) {
-  for (const int column : {1, 2}) {
-    change("run_00.csv", [&](int, Row& row) { row[static_cast<std::size_t>(column)] = "nan"; });
-    change("run_01.csv", [](int, Row&) {});
-    const std::string said = std::string("run_00.csv: run \"00\": column ") + (column == 1 ? "wz" : "left") +
-                             " has no value in any of its 80 samples";
-    for (const char* missing : {"gap", "predict"}) {
-      const ProgramResult result = modebank({"run", config(), "--until", "windows", "--archive.output", archive(),
-                                             "--force", "--data.missing", missing, "--data.train", "00, 01"});
-      EXPECT_THAT(result.err, HasSubstr(said)) << missing;
-      EXPECT_EQ(result.status, column == 1 && std::string(missing) == "predict" ? 0 : 1) << missing << result.err;
-    }
-  }
 }
 
 /// Counts every measured sample that has no score.

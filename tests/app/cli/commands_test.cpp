@@ -3,9 +3,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <random>
-#include <sstream>
 
-#include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 
@@ -13,27 +11,6 @@ namespace modebank::test {
 namespace {
 
 class Commands : public CliTest {};
-
-/// A system that switches between three gains, 0, 1 and 2.
-TEST_F(Commands, TheLargestNumberOfComponentsIsTheMostModesThatABankMayHave) {
-  std::mt19937_64 generator(5);
-  boost::random::normal_distribution<double> normal;
-  for (const char* name : {"run_00.csv", "run_01.csv"}) {
-    std::string text = "time,wz,left,right\n";
-    double wz = 0.0;
-    for (int k = 0; k < 600; ++k) {
-      const double left = normal(generator), right = normal(generator);
-      text += fmt::format("{:.1f},{},{},{}\n", 0.1 * k, wz, left, right);
-      wz = 0.5 * wz + (k / 100 % 3) * (right - left) + 0.01 * normal(generator);
-    }
-    write(name, text);
-  }
-  for (const int components : {3, 2}) {
-    const ProgramResult result = run({"--mixture.components", std::to_string(components)});
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_EQ(read_archive(archive()).bank->mode_count(), components);
-  }
-}
 
 /// Data without noise: y[k+1] = 0.9 y[k] + 0.2 u[k], with all digits.
 TEST_F(Commands, DataWithoutNoiseEndInCoefficients) {
@@ -85,46 +62,6 @@ TEST_F(Commands, StepsThatScatterEndInOneModelAndItsTimeConstant) {
   EXPECT_EQ(archived.finding->answer, Answer::not_yet);
   ASSERT_EQ(archived.bank->mode_count(), 1);
   EXPECT_NEAR(-archived.recording->median_period_s() / std::log1p(archived.bank->theta(0)(0)), 1.0, 0.1);
-}
-
-/// The import refuses values whose square is too large for a double. So the test makes such values itself.
-TEST(WindowWarnings, NameWindowsWithoutAFiniteFit) {
-  app::WindowCounts counts;
-  counts.status[static_cast<std::size_t>(FitStatus::converged)] = 5;
-  EXPECT_EQ(app::window_warning(counts), "");
-  counts.status[static_cast<std::size_t>(FitStatus::failed)] = 3;
-  const std::string warning = app::window_warning(counts);
-  EXPECT_NE(warning.find("3 of 8 windows have no finite fit"), std::string::npos) << warning;
-}
-
-TEST_F(Commands, ThePapersOwnLayoutRunsByChangingDataOptionsOnly) {
-  for (const char* run : {"01", "02"}) {
-    std::istringstream lines(csv_run(90, static_cast<unsigned>(run[1])));
-    std::string line, states = "time,IMU_fil_AngZ\n", joints = "Time,name,velocity_0,velocity_1\n";
-    std::getline(lines, line);
-    for (int k = 0; std::getline(lines, line); ++k) {
-      std::istringstream fields(line);
-      std::string time, wz, left, right;
-      std::getline(fields, time, ',');
-      std::getline(fields, wz, ',');
-      std::getline(fields, left, ',');
-      std::getline(fields, right);
-      states += time + "," + wz + "\n";
-      joints += std::to_string(1700000000 + k) + ",\"['front_left', 'front_right']\"," + left + "," + right + "\n";
-    }
-    write("TSyn_" + std::string(run) + ".csv", states);
-    write("joint_states_" + std::string(run) + ".csv", joints);
-  }
-  const std::string husky = (project_dir() / "configs/husky_ice.ini").string();
-  const ProgramResult result =
-      modebank({"run", husky, "--data.root", file(".").string(), "--data.inputs", "joint_states_*.csv", "--data.states",
-                "TSyn_*.csv", "--data.state", "IMU_fil_AngZ", "--data.input", "velocity_0, velocity_1", "--data.join",
-                "row", "--archive.output", archive()});
-  ASSERT_EQ(result.status, 0) << result.err;
-  const Archive content = read_archive(archive());
-  ASSERT_EQ(content.recording->runs.size(), 2u);
-  EXPECT_EQ(content.recording->runs[0].samples(), 90);
-  EXPECT_EQ(content.recording->runs[0].run, "01");
 }
 
 }  // namespace

@@ -5,10 +5,8 @@
 #include <variant>
 
 #include "app/cli/command_table.hpp"
-#include "app/cli/help_text.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
-#include "app/report/page/assets.hpp"
 #include "app/text/terminal.hpp"
 #include "tests/app/cli_fixture.hpp"
 
@@ -28,42 +26,6 @@ TEST_F(Help, OfEveryCommandFitsAScreenAndIsTheSameBothWays) {
     for (const app::CommandOption& option : command.options)
       EXPECT_NE(help.out.find("--" + option.long_name()), std::string::npos) << option.name;
   }
-}
-
-/// All names of a term lead to it. Words that are not used for the term also lead to it.
-TEST_F(Help, AnswersEveryWordOfTheGlossary) {
-  for (const nlohmann::json& term : nlohmann::json::parse(app::assets::terms_json())) {
-    std::vector<std::string> names{term.at("term")};
-    for (const char* member : {"also", "not"})
-      for (const std::string name : term.at(member)) names.push_back(name);
-    for (const std::string& name : names)
-      EXPECT_NE(app::help_on(name).find(term.at("means").get<std::string>()), std::string::npos) << name;
-  }
-  EXPECT_EQ(app::help_on("regime").find("\"regime\" is called mode here.\nmode: "), 0u) << app::help_on("regime");
-}
-
-TEST_F(Help, CaseMattersWhereTwoTermsDifferByIt) {
-  EXPECT_EQ(app::help_on("Q").find("process noise: Q: covariance of what a mode's model does not predict"), 0u);
-  EXPECT_EQ(app::help_on("q").find("q: Number of free parameters of a mixture"), 0u);
-  EXPECT_EQ(app::help_on("rmse"), app::help_on("RMSE"));
-}
-
-TEST_F(Help, KnowsSectionsAndKeys) {
-  const std::string section = modebank({"help", "window"}).out;
-  for (const app::Option& option : app::option_table()) {
-    EXPECT_EQ(section.find("--" + option.key + " ") != std::string::npos, option.section() == "window") << option.key;
-  }
-  EXPECT_NE(modebank({"help", "bank.refine"}).out.find("--bank.refine"), std::string::npos);
-}
-
-TEST_F(Help, OfEveryKeySaysWhenToTouchIt) {
-  for (const app::Option& option : app::option_table()) {
-    EXPECT_FALSE(option.when.empty()) << option.key;
-    EXPECT_FALSE(option.when.ends_with(".")) << option.key << ": the full stop is the printer's";
-  }
-  const std::string help = modebank({"help", "data.split"}).out;
-  EXPECT_NE(help.find("When to change it: for a single long run"), std::string::npos) << help;
-  EXPECT_NE(help.find("changes the stage data and those that follow"), std::string::npos) << help;
 }
 
 /// Only the table declares options: all commands with an option of one name set the same member.
@@ -97,17 +59,6 @@ TEST_F(Help, WordsAfterACommandAreCounted) {
   }
 }
 
-TEST_F(Help, ErrorsAreColouredOnATerminalAlone) {
-  const auto on_terminal = [](const std::string& variables) {
-    return run_program({"script", "-qc", variables + " TERM=xterm " + MODEBANK_PROGRAM + " run no.ini", "/dev/null"})
-        .out;
-  };
-  const std::string coloured = "\x1b[1;31mmodebank:\x1b[0m cannot read the configuration no.ini";
-  EXPECT_NE(on_terminal("").find(coloured), std::string::npos) << on_terminal("");
-  EXPECT_EQ(on_terminal("NO_COLOR=1").find("\x1b[1"), std::string::npos) << on_terminal("NO_COLOR=1");
-  EXPECT_EQ(modebank({"run", "no.ini"}).err.find("modebank: cannot read the configuration no.ini"), 0u);
-}
-
 TEST_F(Help, DryRunSaysWhereEachValueComesFromAndIsAConfiguration) {
   const ProgramResult shown = modebank({"run", config(), "--dry-run", "--window.length", "17"});
   ASSERT_EQ(shown.status, 0) << shown.err;
@@ -117,15 +68,6 @@ TEST_F(Help, DryRunSaysWhereEachValueComesFromAndIsAConfiguration) {
   write("again.ini", shown.out);
   EXPECT_EQ(app::resolved_text(app::load_config(file("again.ini"), {})),
             app::resolved_text(app::load_config(config(), {{"window.length", "17"}})));
-}
-
-TEST_F(Help, DryRunNamesTheLineOfEachValueOfARepeatableKey) {
-  write("derived.ini", "[data]\ninputs = run_*.csv\nstate = a\nderive = a = 2 * wz\nderive = b = 3 * wz\n");
-  const std::string shown = modebank({"run", file("derived.ini").string(), "--dry-run"}).out;
-  EXPECT_NE(shown.find(fmt::format("{:<40}  # {}:4\n", "derive = a = 2 * wz", file("derived.ini").string())),
-            std::string::npos)
-      << shown;
-  EXPECT_NE(shown.find("derived.ini:5\n"), std::string::npos) << shown;
 }
 
 TEST_F(Help, JsonHasEveryCommandAndEveryKeyWithItsDefault) {
@@ -142,14 +84,6 @@ TEST_F(Help, JsonHasEveryCommandAndEveryKeyWithItsDefault) {
   for (const app::Option& option : app::option_table())
     EXPECT_EQ(keys[option.key].value("default", "absent"), option.get(app::Config{})) << option.key;
   EXPECT_GT(found.at("terms").size(), 50u);
-}
-
-TEST_F(Help, DryRunNamesFilesAndWritesNone) {
-  const ProgramResult result = run({"--dry-run"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  for (const char* part : {"reads     ", "run_00.csv", "run_01.csv", "writes    ", "out.h5"})
-    EXPECT_NE(result.out.find(part), std::string::npos) << result.out;
-  EXPECT_TRUE(left_behind().empty());
 }
 
 TEST_F(Help, BashCompletesCommandsOptionsKeysAndValues) {

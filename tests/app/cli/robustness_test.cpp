@@ -2,20 +2,15 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
 #include "app/cli/track_output.hpp"
 #include "app/config/config_file.hpp"
 #include "app/study/space/study_plan.hpp"
-#include "app/text/number_text.hpp"
-#include "app/text/terminal.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/printable.hpp"
 #include "io/archive/bank/load_bank.hpp"
-#include "io/archive/study_file.hpp"
-#include "io/files/csv_field.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/io/archive/archive_patch.hpp"
@@ -24,9 +19,7 @@ namespace modebank::test {
 namespace {
 
 namespace fs = std::filesystem;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
-using ::testing::Not;
 
 class Robustness : public CliTest {
  protected:
@@ -59,29 +52,6 @@ TEST_F(Robustness, D1AKeyThatNamesAFileElsewhereIsRefused) {
   EXPECT_EQ(result.status, 1);
   EXPECT_THAT(result.err, HasSubstr("the key \"../../victim\" is not 64 hexadecimal digits"));
   EXPECT_EQ(read_file(file("victim.h5")), "precious");
-}
-
-TEST_F(Robustness, D12ATrialThatIsADeviceIsNotRead) {
-  const std::string key(64, 'a');
-  const fs::path study = study_of(key);
-  fs::create_symlink("/dev/zero", study / "trials" / (key + ".h5"));
-  EXPECT_THAT(report(study).out, HasSubstr("is not a regular file"));
-}
-
-TEST_F(Robustness, D13CausesInPlaceOfInternalMessages) {
-  const fs::path study = study_of(std::string(64, 'a'));
-  write_study_file(app::plan_file(study), {{}, "", "plan", {{"key", std::vector<std::string>{"a"}}}, {}, {}});
-  EXPECT_THAT(report(study).err, HasSubstr("not a plan"));
-  const std::vector<std::string> text{"x"};
-  write_study_file(
-      app::plan_file(study),
-      {{}, "", "plan", {{"key", text}, {"repeat", text}, {"seed", text}, {"status", text}, {"message", text}}, {}, {}});
-  EXPECT_THAT(report(study).err, HasSubstr("not a plan: its column repeat has values of another type"));
-  fs::remove(app::plan_file(study));
-  fs::create_symlink("plan.h5", app::plan_file(study));
-  const ProgramResult loop = report(study);
-  EXPECT_EQ(loop.status, 1);
-  EXPECT_THAT(loop.out + loop.err, AllOf(HasSubstr("plan.h5: Too many levels"), Not(HasSubstr("filesystem error"))));
 }
 
 TEST_F(Robustness, D13TailsBeyondEverySeriesAreZeroAndUndefinedOnesNaN) {
@@ -146,38 +116,6 @@ TEST_F(Robustness, D15TracksLinesAreUtf8WhateverTheName) {
   }
 }
 
-TEST_F(Robustness, D16TheWidthIsThatOfATerminal) {
-  const char* const before = std::getenv("COLUMNS");
-  const std::string kept = before ? before : "";
-  setenv("COLUMNS", "2000000000", 1);
-  EXPECT_LE(app::standard_output().width, 10000);
-  setenv("COLUMNS", "99999999999999999999", 1);
-  EXPECT_LE(app::standard_output().width, 10000);
-  setenv("COLUMNS", "80", 1);
-  EXPECT_EQ(app::standard_output().width, 80);
-  if (before)
-    setenv("COLUMNS", kept.c_str(), 1);
-  else
-    unsetenv("COLUMNS");
-}
-
-TEST_F(Robustness, D16SmallErrorsAreNotPrintedAsZero) {
-  EXPECT_EQ(app::size_text(3.48e-10, 5), "3.48e-10");
-  EXPECT_EQ(app::size_text(0.0348, 5), "0.03480");
-  EXPECT_EQ(app::size_text(0.0, 5), "0.00000");
-  EXPECT_EQ(app::size_text(2e15, 5), "2e+15");
-}
-
-TEST_F(Robustness, D16TablesHoldNoFormulas) {
-  for (const std::string formula : {"=cmd|' /C calc'!A0", "@SUM(1)", "+x", "-x", "\tx", "=1+2"})
-    EXPECT_EQ(csv_field(formula), "'" + formula);
-  EXPECT_EQ(csv_field("\rx"), "\"'\rx\"");
-  for (const std::string plain : {"-1", "+1.5e-3", "wz", "", "-inf"}) EXPECT_EQ(csv_field(plain), plain);
-  EXPECT_EQ(csv_field("=1,2"), "\"'=1,2\"");
-  EXPECT_EQ(csv_field("a,\"b\""), "\"a,\"\"b\"\"\"");
-  EXPECT_EQ(quoted_field("-x"), "-x") << "read back by its name";
-}
-
 TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
   ASSERT_EQ(run({"--mixture.components", "1"}).status, 0);
   fs::copy_file(file("run_01.csv"), file("log.csv"));
@@ -195,44 +133,11 @@ TEST_F(Robustness, P8AnOutputIsReplacedByItsLike) {
     }
 }
 
-TEST_F(Robustness, P8AStudysTableIsNoArchive) {
-  ASSERT_EQ(
-      modebank({"study", config(), "--study.vary", "mixture.components = 1 | 2", "--study.output", file("s").string()})
-          .status,
-      0);
-  for (const char* name : {"s/study.h5", "s/plan.h5"}) {
-    const std::string before = read_file(file(name));
-    const ProgramResult result = modebank({"run", config(), "--force", "--archive.output", file(name).string()});
-    EXPECT_EQ(result.status, 2) << result.err;
-    EXPECT_EQ(read_file(file(name)), before);
-  }
-}
-
-TEST_F(Robustness, P8ALinkedArchiveIsWrittenThrough) {
-  fs::create_directory(file("far"));
-  fs::create_symlink("far/target.h5", archive());
-  ASSERT_EQ(until_windows(config()).status, 0);
-  EXPECT_TRUE(fs::is_symlink(archive()));
-  EXPECT_EQ(modebank({"verify", file("far/target.h5").string()}).status, 0);
-}
-
 TEST_F(Robustness, P8WordsBehindTwoDashesAreFiles) {
   write("--force.ini", app::resolved_text(app::Config()));
   EXPECT_EQ(modebank({"--", "check", config()}).status, 0);
   EXPECT_THAT(modebank({"run", "--", "--force"}).err, HasSubstr("--force"));
   EXPECT_THAT(modebank({"run", "--", config(), "--force"}).err, HasSubstr("run needs one configuration file"));
-}
-
-TEST_F(Robustness, SimulationsThatWouldBeWrittenReadNoData) {
-  const ProgramResult result = modebank({"simulate", config(), "--dry-run", "--simulate.output", file("sim").string()});
-  EXPECT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(result.out, AllOf(HasSubstr("writes"), Not(HasSubstr("reads"))));
-}
-
-TEST_F(Robustness, AMessageNamesAFileOnce) {
-  const fs::path study = study_of("../../victim");
-  const std::string plan = app::plan_file(study).string();
-  EXPECT_THAT(report(study).err, Not(HasSubstr(plan + ": " + plan)));
 }
 
 /// Characters that change how a terminal displays a log, a table or C source.

@@ -1,20 +1,14 @@
 // The live filter with failures around it: full disks, logs without a reader.
 #include <fcntl.h>
-#include <gmock/gmock.h>
 #include <unistd.h>
 
 #include <csignal>
-#include <filesystem>
 #include <fstream>
 
 #include "tests/app/cli/track_fixture.hpp"
 
 namespace modebank::test {
 namespace {
-
-using ::testing::HasSubstr;
-using ::testing::Not;
-using ::testing::StartsWith;
 
 /// Runs the program in a shell. The shell's redirections cause the failures.
 class TrackRobot : public Track {

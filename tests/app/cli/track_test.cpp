@@ -1,6 +1,4 @@
 // The live filter as a program with a pipe at each end.
-#include <fmt/format.h>
-#include <gmock/gmock.h>
 
 #include <cmath>
 #include <csignal>
@@ -49,39 +47,6 @@ TEST_F(Track, CombinedFiltersStartEquallyWhereTrainingScoredNothing) {
   for (std::size_t i = 1; i < densities.size(); ++i)
     mean += std::exp(densities[i]) / static_cast<double>(densities.size() - 1);
   EXPECT_NEAR(densities[0], std::log(mean), 1e-9);
-}
-
-TEST_F(Track, TakesWhatOtherProgramsWrite) {
-  const std::vector<std::string> samples = lines("run_01.csv");
-  const auto answer = [&](const std::vector<std::string>& input, std::size_t answers) {
-    PipedProgram program(command());
-    for (const std::string& line : input) program.write(line);
-    program.close_input();
-    std::vector<std::string> result;
-    for (std::size_t k = 0; k < answers; ++k) result.push_back(program.read_line().value_or("none"));
-    EXPECT_FALSE(program.read_line());
-    EXPECT_EQ(program.wait(), 0);
-    const bool ended = input.back().ends_with("\n");
-    EXPECT_EQ(program.errors().find("the last line has no line break") == std::string::npos, ended);
-    return result;
-  };
-  const std::vector<double> a = numbers(samples[1]), b = numbers(samples[2]);
-  const auto plain = answer({samples[0] + "\n", samples[1] + "\n", samples[2] + "\n"}, 3);
-  // The file has a byte order mark, CR LF, empty lines, more columns in another order, and no newline at the end.
-  const auto row = [](const std::vector<double>& v) { return fmt::format("{},x,{},{},{}", v[3], v[1], v[0], v[2]); };
-  EXPECT_EQ(answer({"\xEF\xBB\xBF"
-                    "right,note,\"wz\",time,left\r\n",
-                    "\r\n", row(a) + "\r\n\n", row(b)},
-                   3),
-            plain);
-  // NaN and Infinity, as Python writes them, count as missing measurements.
-  const auto object = [](const std::vector<double>& v, const std::string& wz) {
-    return fmt::format("{{\"time\": {}, \"note\": \"NaN\", \"wz\": {}, \"left\": {}, \"right\": {}}}\n", v[0], wz, v[2],
-                       v[3]);
-  };
-  const std::string first = object(a, fmt::format("{}", a[1]));
-  EXPECT_EQ(answer({"\xEF\xBB\xBF" + first, object(b, "NaN")}, 2), answer({first, object(b, "null")}, 2));
-  EXPECT_EQ(answer({first, object(b, "-Infinity")}, 2), answer({first, object(b, "null")}, 2));
 }
 
 TEST_F(Track, EndsCleanlyWhenNobodyReadsOrASignalComes) {

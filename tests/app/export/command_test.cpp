@@ -12,7 +12,6 @@ namespace modebank::test {
 namespace {
 
 using nlohmann::json;
-using ::testing::Contains;
 using ::testing::HasSubstr;
 
 class Export : public CliTest {
@@ -71,27 +70,6 @@ TEST_F(Export, ModesHaveTheirNames) {
   const json modes = json::parse(exported("json").out).at("modes");
   EXPECT_EQ(modes.at(0).at("name"), "ice */ \"grit\"");
   for (std::size_t k = 1; k < modes.size(); ++k) EXPECT_EQ(modes.at(k).at("name"), "mode " + std::to_string(k));
-}
-
-/// Every mode belongs to the family that it names. Families are ordered by use.
-TEST_F(Export, ModesHaveTheirFamily) {
-  ASSERT_EQ(run({"--mixture.components", "2", "--bank.refine", "none"}).status, 0);
-  judge(Calibration::calibrated);
-  Archive stored = read_archive(archive());
-  stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "ice");
-  stored.mode_names.back() = "grip";
-  write_archive(archive(), stored);
-  const json page = json::parse(exported("json").out);
-  const json& families = page.at("families");
-  ASSERT_EQ(families.size(), 2u);
-  EXPECT_GE(families.at(0).at("used"), families.at(1).at("used"));
-  double used = 0.0;
-  for (const json& family : families) {
-    used += family.at("used").get<double>();
-    for (const json& mode : family.at("modes"))
-      EXPECT_EQ(page.at("modes").at(mode.get<std::size_t>()).at("family"), family.at("family"));
-  }
-  EXPECT_NEAR(used, 1.0, 1e-9);
 }
 
 TEST_F(Export, WritesFilesWholeOrNotAtAll) {

@@ -227,14 +227,6 @@ Trajectory disturbed(Trajectory run, double dt_s) {
   return run;
 }
 
-std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& options, const Trajectory& run) {
-  BankFilter filter(bank, options);
-  std::vector<FilterEstimate> estimates;
-  for (Index k = 0; k < run.samples(); ++k)
-    estimates.push_back(filter.step(run.time_s(k), run.input.col(k), run.state.col(k)));
-  return estimates;
-}
-
 Differences differences_of_c(const ExportedBank& exported, const std::vector<Trajectory>& runs) {
   const TemporaryFolder folder;
   const auto file = [&](const std::string& name) { return (folder.path() / name).string(); };

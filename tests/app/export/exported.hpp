@@ -18,9 +18,6 @@ ExportedBank as_exported(Bank bank, const FilterOptions& options = {});
 /// Adds typical faults to a run: one or several missing signals, an unknown input, short gaps in time and one long gap.
 Trajectory disturbed(Trajectory run, double dt_s);
 
-/// Results of BankFilter::step for each sample of a run.
-std::vector<FilterEstimate> stepped(const Bank& bank, const FilterOptions& options, const Trajectory& run);
-
 /// The largest differences between the exported C code and BankFilter over a run. Means are in units of the
 /// predictions' standard deviations, probabilities are absolute, and covariances and log densities are relative. gcc
 /// and clang compile the C code with the strictest options of C99.

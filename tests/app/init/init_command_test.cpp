@@ -53,22 +53,6 @@ TEST_F(InitCommand, NamesOfFoldersAndFilesStayWhatTheyAre) {
   EXPECT_FALSE(std::filesystem::exists(file("pwned")));
 }
 
-TEST_F(InitCommand, NamesWithTheMarkOfACommentAreQuoted) {
-  const std::string rows = csv_run(300, 1);
-  write("hash.csv", "t#1,flow#1,\"valve, #2\",right" + rows.substr(rows.find('\n')));
-  const std::string ini = file("hash.ini").string();
-  const ProgramResult made = modebank({"init", file("hash.csv").string(), "-o", ini});
-  ASSERT_EQ(made.status, 0) << made.err;
-  const std::string text = read_file(ini);
-  EXPECT_THAT(text, HasSubstr("derive = \"flow_1 = 'flow#1'\""));
-  EXPECT_THAT(text, HasSubstr("derive = \"valve = 'valve, #2'\""));
-  EXPECT_THAT(text, HasSubstr("time = \"t#1\""));
-  EXPECT_THAT(text, HasSubstr("state = flow_1"));
-  const ProgramResult ran = modebank({"run", ini, "--archive.output", archive()});
-  ASSERT_EQ(ran.status, 0) << ran.err;
-  EXPECT_THAT(modebank({"show", archive(), "config"}).out, HasSubstr("flow_1 = 'flow#1'"));
-}
-
 TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
   for (const char* name : {"a#b.csv", "a,b.csv", "a*b.csv", " a.csv", "a\nb.csv"}) {
     write(name, csv_run(50, 1));
@@ -77,23 +61,6 @@ TEST_F(InitCommand, AFileThatNoConfigurationCanNameIsRefused) {
     EXPECT_THAT(result.err, HasSubstr("no configuration can name it")) << name;
     EXPECT_FALSE(std::filesystem::exists(file("x.ini"))) << name;
   }
-}
-
-/// In bags of C++ nodes, only the headers of the connections contain the topics.
-TEST_F(InitCommand, TellsTheTopicsOfARecordingApart) {
-  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
-  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
-  const ProgramResult made = modebank({"init", file("drive.bag").string(), "-o", file("drive.ini").string()});
-  ASSERT_EQ(made.status, 0) << made.err;
-  EXPECT_THAT(made.out, HasSubstr("/cmd (std_msgs/Float64): 400 rows, 10 Hz"));
-  EXPECT_THAT(made.out, HasSubstr("/speed (std_msgs/Float64): 400 rows, 10 Hz"));
-  EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("state = /speed.data"));
-  EXPECT_THAT(read_file(file("drive.ini")), HasSubstr("input = /cmd.data"));
-  const ProgramResult frames = modebank({"init", file("tf.bag").string(), "-o", file("tf.ini").string()});
-  EXPECT_NE(frames.status, 0);
-  EXPECT_THAT(frames.out, HasSubstr("left out: topic /tf: its messages alternate between 2 frames (base, arm); "
-                                    "set data.run = /tf.transforms[0].child_frame_id for one run per frame"));
-  EXPECT_FALSE(std::filesystem::exists(file("tf.ini")));
 }
 
 }  // namespace

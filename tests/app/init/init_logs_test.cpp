@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <random>
 
@@ -72,23 +71,6 @@ class InitLogs : public ::testing::Test {
     }
   }
 
-  Names in(const fs::path& at, const std::string& ending) const {
-    Names files;
-    for (const auto& entry : fs::directory_iterator(at))
-      if (entry.path().extension() == ending) files.push_back(entry.path().string());
-    std::sort(files.begin(), files.end());
-    return files;
-  }
-  std::string data(const std::string& name) const { return (test::shared_data_dir() / name).string(); }
-  /// A log of a case. The script of the case makes it.
-  std::string made(const std::string& name, const std::string& arguments = "") const {
-    const fs::path at = folder.path() / name;
-    fs::create_directories(at);
-    const fs::path script = test::shared_data_dir().parent_path() / "cases" / name / "gen.py";
-    const std::string command =
-        fmt::format("cd '{}' && /usr/bin/python3 '{}' {} > /dev/null 2>&1", at.string(), script.string(), arguments);
-    return std::system(command.c_str()) == 0 ? at.string() : "";  // NOLINT(cert-env33-c,concurrency-mt-unsafe)
-  }
   std::string write(const std::string& name, const std::string& text) const {
     write_file(folder.path() / name, text);
     return (folder.path() / name).string();
@@ -115,91 +97,6 @@ std::string log_of(const std::string& header, int rows, Line line) {
   std::string text = header;
   for (const Drive& d : drive(rows)) text += line(d) + "\n";
   return text;
-}
-
-std::string german(std::string text) {
-  for (char& c : text) c = c == ',' ? ';' : c == '.' ? ',' : c;
-  return text;
-}
-
-struct Expected {
-  std::string name;
-  Names files, state, input;
-};
-
-TEST_F(InitLogs, FindsStateAndInputsOfNearlyAllOfAList) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  std::vector<Expected> list{
-      {"bag", {data("bags/husky_outdoor_test1.bag")}, {"yaw_rate"}, {"linear_x", "angular_z"}},
-      {"odometry and imu",
-       {data("bags/husky_outdoor_test1_odom.csv"), data("bags/husky_outdoor_test1_imu.csv")},
-       {"wy"},
-       {"vx", "wz"}},
-      {"imu", {data("bags/husky_outdoor_test1_imu.csv")}, {"wy"}, {}},
-      {"odometry", {data("bags/husky_outdoor_test1_odom.csv")}, {"wz"}, {}},
-      {"fix", {data("bags/husky_outdoor_test1_fix.csv")}, {"alt"}, {}},
-      {"ice", in(data("borealtc/ICE"), ".csv"), {"wz"}, {"velL", "velR"}},
-      {"flooring", in(data("borealtc/FLOORING"), ".csv"), {"wz"}, {"velL", "velR"}},
-      {"tanks", in(data("cascaded_tanks"), ".csv"), {"level"}, {"pump"}},
-      {"one tank", {data("cascaded_tanks/est.csv")}, {"level"}, {"pump"}},
-      {"dart", in(data("dart"), ".csv"), {"yaw_rate"}, {"steering", "throttle"}},
-      {"one dart", {data("dart/rub_01.csv")}, {"yaw_rate"}, {"steering", "throttle"}},
-      {"husky", {data("drive_husky/husky_samples.csv")}, {"gyro_z"}, {"wheel_left", "wheel_right"}},
-      {"windows", {data("drive_husky/husky_windows.csv")}, {"gyro_z_mean"}, {"wheel_left_mean", "wheel_right_mean"}},
-      {"deadzone", {data("hybrid/example_deadzone.csv")}, {"x"}, {"u"}},
-      {"buck", {data("sysid_classic/buck_id.csv")}, {"y"}, {"input"}},
-      {"arm", {data("sysid_classic/robot_arm.dat")}, {"c2"}, {"c1"}},
-  };
-  for (const char* file : {"s.csv", "min.csv", "h.csv", "hours.csv"})
-    list.push_back({file, {made("field_06_hours") + "/" + file}, {"y"}, {"u"}});
-  list.push_back({"uneven", in(made("field_04_uneven_times") + "/d", ".csv"), {"y"}, {"u"}});
-  list.push_back({"iso", {made("field_09_clock_times") + "/iso.csv"}, {"y"}, {"u"}});
-  list.push_back({"plain", {made("field_10_comma_in_names") + "/plain.csv"}, {"flow"}, {"valve"}});
-  list.push_back({"unstable", in(made("field_18_unstable_gain") + "/d", ".csv"), {"yaw_rate"}, {"rudder"}});
-  list.push_back({"binary", in(made("field_17_binary_input", "binary 1 1") + "/d", ".csv"), {"y"}, {"u"}});
-  list.push_back({"topics", {made("field_02_bag_topics") + "/with_topic.bag"}, {"/speed.data"}, {"/cmd.data"}});
-  const auto row = [](const Drive& d) { return fmt::format("{:.3f},{:.5f},{},{}", d.t, d.rate, d.left, d.right); };
-  list.push_back({"spreadsheet",
-                  {write("excel.csv", log_of("Zeit;Gierrate;Rad links;Rad rechts\ns;rad/s;m/s;m/s\n", 900,
-                                             [&](const Drive& d) { return german(row(d)); }))},
-                  {"Gierrate"},
-                  {"Rad links", "Rad rechts"}});
-  list.push_back({"no header", {write("matlab.csv", log_of("", 900, row))}, {"c2"}, {"c3", "c4"}});
-  list.push_back(
-      {"commands last", {write("last.csv", log_of("t,q,left,right\n", 900, row))}, {"q"}, {"left", "right"}});
-  list.push_back({"oven",
-                  {write("oven.csv", log_of("time,temperature,heater,fan\n", 900, row))},
-                  {"temperature"},
-                  {"heater", "fan"}});
-  list.push_back({"gyro and wheels",
-                  {write("gyro.csv", log_of("time,gx,gy,gz\n", 900,
-                                            [](const Drive& d) {
-                                              return fmt::format("{:.3f},{:.5f},{:.5f},{:.5f}", d.t, d.noise,
-                                                                 -d.noise * d.t, d.rate);
-                                            })),
-                   write("wheels.csv", log_of("time,vel_left,vel_right\n", 900,
-                                              [](const Drive& d) {
-                                                return fmt::format("{:.3f},{},{}", d.t + 0.01, d.left, d.right);
-                                              }))},
-                  {"gz"},
-                  {"vel_left", "vel_right"}});
-  const auto shown = [](const Names& names) { return fmt::format("{}", fmt::join(names, ", ")); };
-  int wrong = 0;
-  for (const Expected& log : list) {
-    Written written;
-    try {
-      written = init(log.files);
-    } catch (const std::exception& error) {
-      ADD_FAILURE() << log.name << ": " << error.what();
-      continue;
-    }
-    if (written.state == log.state && written.input == log.input) continue;
-    ++wrong;
-    std::cout << log.name << ": state " << shown(written.state) << ", input " << shown(written.input) << "\n";
-    EXPECT_THAT(written.text, HasSubstr("\n# ! ")) << log.name;
-  }
-  EXPECT_GE(list.size(), 30U);
-  EXPECT_LE(10 * wrong, static_cast<int>(list.size()));
 }
 
 /// Texts that name runs. Each run lasts from one gap to the next.
@@ -260,29 +157,6 @@ TEST_F(InitLogs, NamesOfAnyLetters) {
   EXPECT_GT(written, 100);
 }
 
-/// Columns with clock times are times, whatever their name. If a column cannot be read as times, this is reported once.
-TEST_F(InitLogs, TimesOfAnyName) {
-  const auto log = [](const std::string& name, auto stamp) {
-    return log_of(name + ",wz,cmd\n", 400, [&](const Drive& d) {
-      return fmt::format("{},{:.5f},{}", stamp(static_cast<int>(std::lround(20 * d.t))), d.rate, d.left);
-    });
-  };
-  const std::string elapsed =
-      log("since start", [](int k) { return fmt::format("{}:{:02}:{:02}", k / 60, k % 60, 0); });
-  EXPECT_THAT(init({write("elapsed.csv", elapsed)}).text, HasSubstr("time = since start"));
-  const auto count = [](const std::string& text, const std::string& part) {
-    std::size_t found = 0;
-    for (std::size_t at = text.find(part); at != std::string::npos; at = text.find(part, at + 1)) ++found;
-    return found;
-  };
-  const std::string days =
-      init({write("days.csv", log("time", [](int k) { return fmt::format("0 days 00:00:{:02}", k % 60); }))}).text;
-  EXPECT_EQ(count(days, "\"0 days 00:00:00\" is not a time"), 1u) << days;
-  const std::string minutes =
-      init({write("minutes.csv", log("time", [](int k) { return fmt::format("2025-04-13 10:{:02}", k / 60); }))}).text;
-  EXPECT_THAT(minutes, HasSubstr("# ! column time: 393 of 400 rows repeat the time of the row before"));
-}
-
 /// Dates of two files can be read in two ways. The format is proposed with a doubt.
 TEST_F(InitLogs, DatesOfSeveralFiles) {
   const auto dated = [&](const std::string& name, const std::string& date) {
@@ -295,14 +169,6 @@ TEST_F(InitLogs, DatesOfSeveralFiles) {
     EXPECT_THAT(init({dated("run_1.csv", first), dated("run_2.csv", second)}).text,
                 AllOf(HasSubstr("can be read in two ways: %d/%m/%Y"), HasSubstr("time_format = %d/%m/%Y")))
         << first;
-}
-
-/// Values with few levels repeat. A lower rate would not help.
-TEST_F(InitLogs, RoundedReadingsAreNoSlowSource) {
-  const Written written = init({write("coarse.csv", log_of("time,y,u\n", 600, [](const Drive& d) {
-                                        return fmt::format("{:.3f},{:.1f},{}", d.t, d.rate, d.left);
-                                      }))});
-  EXPECT_EQ(written.text.find("rate_hz"), std::string::npos) << written.text;
 }
 
 TEST_F(InitLogs, WritesNothingThatRunRefuses) {

@@ -6,8 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <sstream>
-#include <tuple>
 
 #include "app/config/config.hpp"
 #include "app/config/config_file.hpp"
@@ -26,14 +24,6 @@ using test::TemporaryFolder;
 using test::write_file;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::Not;
-
-TEST(NameWords, AreSplitWhereNamesChange) {
-  EXPECT_EQ(words_of_name("/imu/data.angular_velocity.z"), " imu data angular velocity z ");
-  EXPECT_EQ(words_of_name("cmd_velL"), " cmd vel l ");
-  EXPECT_EQ(words_of_name("yawRate"), " yaw rate ");
-  EXPECT_EQ(words_of_name("wz"), " wz ");
-}
 
 TEST(NameWords, TellStatesFromInputs) {
   for (const char* name : {"wz", "gyro_z", "yaw_rate", "/imu/data.angular_velocity.z", "level", "y", "output"})
@@ -44,15 +34,6 @@ TEST(NameWords, TellStatesFromInputs) {
   for (const char* name : {"header.seq", "orientation_covariance[3]", "time", "/fix.latitude", "run_id", "stamp"})
     EXPECT_TRUE(score_name(name).ignored) << name;
   EXPECT_GT(score_name("/imu/data.angular_velocity.z").state, score_name("/odom.twist.twist.angular.z").state);
-}
-
-TEST(NameWords, KnowAxes) {
-  EXPECT_TRUE(names_angular_rate("wz", Axis::z));
-  EXPECT_TRUE(names_angular_rate("/imu.angular_velocity.y", Axis::y));
-  EXPECT_FALSE(names_angular_rate("qz", Axis::z));
-  EXPECT_TRUE(names_acceleration("ay", Axis::y));
-  EXPECT_TRUE(names_acceleration("/imu.linear_acceleration.x", Axis::x));
-  EXPECT_FALSE(names_acceleration("yaw", Axis::x));
 }
 
 TEST(CommonPattern, EndsWhereWordsEnd) {
@@ -208,52 +189,6 @@ TEST_F(Init, NamesWithControlCharactersAreNoSignals) {
   EXPECT_THAT(config.data.time, ElementsAre("t [ms]"));
 }
 
-TEST_F(Init, FindsTheTableBehindATitle) {
-  const auto tabs = [](double t, double y, double u) { return fmt::format("{:.2f}\t{:.6f}\t{:.6f}\n", t, u, y); };
-  const auto commas = [](double t, double y, double u) { return fmt::format("{:.2f},{:.6f},{:.6f}\n", t, u, y); };
-  struct Case {
-    std::string title;
-    std::size_t lines;
-    bool tabs;
-  };
-  for (const Case& c : {Case{"A towing tank, somewhere\nZig-zag manoeuvre : 10 / -10\n\n", 3, true},
-                        Case{" TANK, model test\n SHIP1\n Z10\xB0/5\xB0\n Time series of motions\n", 4, true},
-                        Case{"\"Plot Title: rig 3\"\n\"time_s\",\"valve\",\"flow\"\n", 1, false}}) {
-    write_file(folder.path() / "tank.dat", c.tabs ? plant(c.title, tabs) : plant(c.title, commas));
-    const std::string text = write({path("tank.dat")});
-    EXPECT_THAT(text, HasSubstr(fmt::format("skip_rows = {} ", c.lines)));
-    EXPECT_THAT(listing, HasSubstr("above the table"));
-    EXPECT_EQ(config.data.format.skip_rows, c.lines);
-    Index samples = 0;
-    for (const Trajectory& run : import_data(config.data).recording.runs) samples += run.samples();
-    EXPECT_GT(samples, 250);
-  }
-  EXPECT_THAT(config.data.state, ElementsAre("flow"));
-  write_file(folder.path() / "rig_1.csv", plant("title\ntime_s,valve,flow\n", commas));
-  write_file(folder.path() / "rig_2.csv", plant("title\nof two lines\ntime_s,valve,flow\n", commas));
-  EXPECT_THAT(write({path("rig_1.csv"), path("rig_2.csv")}), HasSubstr("skip_rows = auto"));
-  EXPECT_EQ(import_data(config.data).recording.runs.size(), 2U);
-  write_file(folder.path() / "tail.dat", plant("", tabs) + "\t\t\n\t\t\n");
-  EXPECT_EQ(write({path("tail.dat")}).find("missing"), std::string::npos) << "rows of separators alone are no rows";
-}
-
-TEST_F(Init, SaysWhatKeepsAColumnFromBeingNumbers) {
-  write_file(folder.path() / "quoted.csv", plant("t,flow,valve\n", [](double t, double y, double u) {
-               std::string text = fmt::format("{:.1f},\"{:.2f}\",\"{:.2f}\"\n", t, 2500 + 300 * y, 40 + 10 * u);
-               for (std::size_t k = text.find(',') + 1; k < text.size(); ++k)
-                 if (text[k] == '.') text[k] = ',';
-               return text;
-             }));
-  try {
-    write({path("quoted.csv")});
-    ADD_FAILURE() << "accepted";
-  } catch (const DataError& error) {
-    EXPECT_THAT(error.what(),
-                HasSubstr("column flow: \"2500,00\" is not a number: other numbers have a decimal point"));
-  }
-  EXPECT_THAT(listing, HasSubstr("text: \"2500,00\" is not a number"));
-}
-
 TEST_F(Init, NamesAPlaceWhereNamesSayNothing) {
   std::string text = "c1,c2\n";
   for (int k = 0; k < 50; ++k) text += fmt::format("{},{}\n", std::sin(k), std::cos(2 * k));
@@ -303,52 +238,6 @@ TEST_F(Init, TakesAColumnThatRisesSteadilyForTheTimes) {
   EXPECT_EQ(config.data.time.size(), 1U);
   const Trajectory run = import_data(config.data).recording.runs.front();
   EXPECT_NEAR(run.time_s(1) - run.time_s(0), 0.05, 1e-9);
-}
-
-TEST_F(Init, FindsOneHertzWhateverTheTimesCount) {
-  for (const auto& [name, per_s, start] : {std::tuple{"time [s]", 1.0, 0.0},
-                                           {"time [min]", 60.0, 0.0},
-                                           {"Time [h]", 3600.0, 0.0},
-                                           {"hours", 3600.0, 0.0},
-                                           {"t [d]", 86400.0, 0.0},
-                                           {"Time", 86400.0, 45764.5}}) {
-    std::string text = std::string(name) + ",u,y\n";
-    for (int k = 0; k < 300; ++k)
-      text += fmt::format("{:.9f},{},{}\n", start + k / per_s, std::cos(0.3 * k), std::sin(0.3 * k));
-    write_file(folder.path() / "log.csv", text);
-    const SurveyedFile file = survey_file(folder.path() / "log.csv");
-    EXPECT_NEAR(file.tables.at(0).sampling.rate_hz, 1.0, 1e-3) << name;
-    EXPECT_EQ(file.tables[0].time.at(0), name);
-  }
-}
-
-TEST_F(Init, LeavesOutRowsFromBeforeTheClockWasSet) {
-  std::string text = "time_s,u,y\n";
-  for (int k = 0; k < 300; ++k)
-    text += fmt::format("{:.1f},{},{}\n", k < 5 ? 0.0 : 1.7e9 + 0.1 * k, std::cos(0.3 * k), std::sin(0.3 * k));
-  write_file(folder.path() / "log.csv", text);
-  const SurveyedFile file = survey_file(folder.path() / "log.csv");
-  const SurveyedTable& table = file.tables.at(0);
-  EXPECT_EQ(table.unset_rows, 5U);
-  EXPECT_EQ(table.time_s.size(), 295);
-  EXPECT_NEAR(table.sampling.rate_hz, 10.0, 1e-6);
-  EXPECT_EQ(table.sampling.gaps, 0);
-  EXPECT_THAT(write({path("log.csv")}), Not(HasSubstr("disorder")));
-}
-
-TEST_F(Init, SaysWhatIsInDoubtOfDates) {
-  for (const auto& [date, said] :
-       {std::pair{"01/02/2024 10:00:{:06.3f}", "time_format = %d/%m/%Y %H:%M:%S.%f"},
-        {"01/02/2024 10:00:{:06.3f}", "# ! times such as 01/02/2024 10:00:00.000 can be read in two ways"},
-        {"01.02.2024 10:00:{:06.3f}", "# ! column time is read as %d.%m.%Y %H:%M:%S.%f"},
-        {"2024;032 10:00:{:06.3f}", "is not a time (expected seconds, or a form such as 2024-05-01T10:00:00.25Z"}}) {
-    std::string text = "time|wz|cmd\n";
-    for (int k = 0; k < 300; ++k)
-      text +=
-          fmt::format("{}|{}|{}\n", fmt::format(fmt::runtime(date), 0.05 * k), std::sin(0.3 * k), std::cos(0.3 * k));
-    write_file(folder.path() / "dates.csv", text);
-    EXPECT_THAT(write({path("dates.csv")}), HasSubstr(said)) << date;
-  }
 }
 
 }  // namespace

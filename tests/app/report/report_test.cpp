@@ -1,18 +1,16 @@
-#include <gmock/gmock.h>
+#include <gtest/gtest.h>
 #include <zlib.h>
 
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
 #include <regex>
 
-#include "app/config/config_file.hpp"
 #include "app/report/page/html_page.hpp"
 #include "app/report/page/numbers.hpp"
 #include "app/report/page/run_page.hpp"
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
 #include "app/report/page/unit_text.hpp"
-#include "app/text/screen_facts.hpp"
 #include "io/archive/archive.hpp"
 #include "io/files/read_file.hpp"
 #include "tests/app/cli_fixture.hpp"
@@ -20,7 +18,6 @@
 namespace modebank::test {
 namespace {
 
-using app::report::Detail;
 using app::report::PageArrays;
 using nlohmann::json;
 
@@ -66,14 +63,6 @@ std::vector<T> values_of(const PageArrays& arrays, const json& place) {
   std::vector<T> values(bytes.size() / sizeof(T));
   std::memcpy(values.data(), bytes.data(), bytes.size());
   return values;
-}
-
-TEST(ReportNumbers, ParametersOfModelsAreWords) {
-  using app::report::parameter_words;
-  EXPECT_EQ(parameter_words("effective_track_m", "m"), "effective track");
-  EXPECT_EQ(parameter_words("slip_left", "1"), "slip left");
-  EXPECT_EQ(parameter_words("mass", ""), "mass");
-  EXPECT_EQ(parameter_words("m", "m"), "m");
 }
 
 TEST(ReportArrays, ComeBackAsTheyWentIn) {
@@ -178,73 +167,6 @@ TEST_F(Report, IsTheSameOfRunsThatStayInTheFile) {
   for (options.size_mb = 64.0; options.size_mb >= 8.0; options.size_mb /= 8.0)
     EXPECT_TRUE(html_of(app::report::run_page(by_runs, "a.h5", options)) ==
                 html_of(app::report::run_page(read_archive(archive()), "a.h5", options)));
-}
-
-/// Largest possible size of all arrays in a section, without outliers [bytes].
-std::size_t most_bytes_of(const json& section) {
-  std::size_t bytes = 0;
-  if (section.is_object() && section.contains("id") && section.contains("type")) {
-    const std::map<std::string, std::size_t> widths{{"f4", 4}, {"f8", 8}, {"i4", 4}, {"share", 2}};
-    return PageArrays::most_bytes(section["size"].get<Index>(), widths.at(section["type"].get<std::string>()));
-  }
-  if (section.is_structured())
-    for (const auto& [key, part] : section.items()) bytes += key == "outliers" ? 0 : most_bytes_of(part);
-  return bytes;
-}
-
-TEST_F(Report, KnowsBeforehandHowLargeItsSignalsAreAtMost) {
-  ASSERT_EQ(run({"--filter.simulate", "10"}).status, 0);
-  Archive stored = read_archive(archive());
-  for (const bool irregular : {false, true}) {
-    if (irregular)
-      for (Trajectory& one : stored.recording->runs) one.time_s.tail(1).array() += 0.5;
-    for (const Detail detail : {Detail{}, Detail{1, 16}, Detail{4, 64}}) {
-      PageArrays arrays;
-      EXPECT_EQ(app::report::most_signal_bytes(stored, detail),
-                most_bytes_of(app::report::runs_section(stored, arrays, detail)));
-    }
-  }
-}
-
-TEST_F(Report, NamesModesAndComparesThemWithLabels) {
-  ASSERT_EQ(run().status, 0);
-  Archive stored = read_archive(archive());
-  const std::string hostile = "</script><script>hostile()</script>";
-  stored.mode_names.assign(static_cast<std::size_t>(stored.bank->mode_count()), "");
-  stored.mode_names[0] = hostile;
-  stored.confusion.clear();
-  for (const auto* label : {"grip", hostile.c_str()})
-    for (Index k = 0; k < stored.bank->mode_count(); ++k)
-      stored.confusion.push_back({"bank", Role::test, label, k, k == 0 ? 3 : 1, k == 0 ? 0.75 : 0.25});
-  write_archive(archive(), stored);
-  ASSERT_EQ(modebank({"report", archive(), "-o", page()}).status, 0);
-  EXPECT_EQ(read_file(page()).find(hostile), std::string::npos);
-  const json bank = data_of_page()["bank"];
-  EXPECT_EQ(bank["modes"][0]["name"], hostile);
-  EXPECT_EQ(bank["confusion"]["role"], "test");
-  ASSERT_EQ(bank["confusion"]["rows"].size(), 2u);
-  const json& row = bank["confusion"]["rows"][1];
-  EXPECT_EQ(row["label"], hostile);
-  EXPECT_EQ(row["samples"]["v"], 3 + stored.bank->mode_count() - 1);
-  const json& families = bank["families"];
-  ASSERT_EQ(row["shares"].size(), bank["told_families"].get<std::size_t>() + 1) << "the last one: others";
-  for (std::size_t f = 0; f < bank["told_families"].get<std::size_t>(); ++f) {
-    if (families[f]["modes"] == json{0}) {
-      EXPECT_EQ(row["shares"][f]["v"], 0.75);
-    }
-  }
-}
-
-TEST_F(Report, BeginsWithWhatTheFirstScreenSays) {
-  ASSERT_EQ(run().status, 0);
-  const Archive stored = read_archive(archive());
-  const json verdict = app::report::verdict_section(stored);
-  const app::FirstScreen screen = app::make_first_screen(stored, app::resolved_values(stored.config));
-  ASSERT_FALSE(verdict["cards"].empty());
-  EXPECT_EQ(verdict["cards"][0]["key"], "coverage");
-  EXPECT_EQ(verdict["cards"][0]["big"]["v"], screen.coverage);
-  ASSERT_EQ(verdict["modes"]["rows"].size(), screen.modes.rows.size());
-  EXPECT_EQ(verdict["modes"]["rows"][0]["modes"], screen.modes.rows[0].modes);
 }
 
 TEST_F(Report, EarlierStagesAlone) {

@@ -64,12 +64,6 @@ TEST_F(Site, NamesAreNoMarkup) {
   EXPECT_TRUE(fs::exists(site / "pages/<b>#1 50 %.html"));
 }
 
-TEST_F(Site, ThePageOfAnArchiveIsTheOneOfReport) {
-  ASSERT_EQ(make().status, 0);
-  ASSERT_EQ(modebank({"report", (results / "a.h5").string(), "-o", file("alone.html").string()}).status, 0);
-  EXPECT_EQ(read_file(site / a_page), read_file(file("alone.html")));
-}
-
 TEST_F(Site, WhatChangedIsMadeAgain) {
   EXPECT_THAT(written(), ElementsAre(a_page, b_page, "index.html"));
   const std::string before = read_file(site / "index.html");
@@ -82,14 +76,6 @@ TEST_F(Site, WhatChangedIsMadeAgain) {
   // An older archive takes the place of a newer one.
   fs::last_write_time(results / "a.h5", fs::last_write_time(results / "a.h5") - std::chrono::hours(1));
   EXPECT_THAT(written(), ElementsAre(a_page, "index.html"));
-}
-
-TEST_F(Site, PagesOfArchivesThatWentHaveNoLink) {
-  ASSERT_EQ(make().status, 0);
-  fs::remove(results / "older/b.h5");
-  EXPECT_THAT(written(), ElementsAre("index.html"));
-  EXPECT_EQ(row("b.h5"), "none");
-  EXPECT_TRUE(fs::exists(site / b_page));
 }
 
 TEST_F(Site, ABrokenArchiveIsALineThatSaysWhy) {
@@ -110,40 +96,6 @@ TEST_F(Site, ABrokenArchiveIsALineThatSaysWhy) {
   EXPECT_THAT(row("b.h5"), HasSubstr(b_page));
 }
 
-TEST_F(Site, AStudyIsOneLineWithItsPage) {
-  const std::vector<std::string> study{"study", config(), "--study.vary", "window.length = 20 | 25", "--study.output"};
-  std::vector<std::string> words = study;
-  words.push_back((results / "s").string());
-  ASSERT_EQ(modebank(words).status, 0);
-  EXPECT_EQ(written().size(), 6u);  // for the study, these are its page and the pages of two runs
-  EXPECT_TRUE(fs::exists(site / "pages/s/study.html"));
-  EXPECT_THAT(row(">s<"), HasSubstr("<a href=\"pages/s/study.html\">s</a>"));
-  EXPECT_THAT(written(), ElementsAre("index.html"));
-}
-
-/// An unfinished study has a row. It also has the page of `report STUDY`, which is made anew each time.
-TEST_F(Site, AStudyThatGoesOnIsALineWithWhatIsDone) {
-  const std::string folder = (results / "s").string();
-  std::vector<std::string> half{"study",          config(), "--study.vary",  "window.length = 20 | 25 | 30",
-                                "--study.output", folder,   "--study.stage", "run"};
-  ASSERT_EQ(modebank(half).status, 0);
-  for (int lost = 0; lost < 2; ++lost)
-    for (const auto& entry : fs::directory_iterator(results / "s/trials"))
-      if (entry.path().extension() == ".h5") {
-        fs::remove(entry.path());
-        break;
-      }
-  ASSERT_FALSE(fs::exists(results / "s/study.h5"));
-  EXPECT_EQ(json::parse(make().out).at("problems").size(), 0u);
-  EXPECT_THAT(row("pages/s/study.html"), HasSubstr("1 of 3 runs are done."));
-  EXPECT_TRUE(fs::exists(site / "pages/s/study.html"));
-  half.resize(half.size() - 2);
-  ASSERT_EQ(modebank(half).status, 0);
-  EXPECT_THAT(written(), ::testing::Contains("pages/s/study.html"));
-  EXPECT_THAT(row("pages/s/study.html"), HasSubstr("3 of 3 runs are done."));
-  EXPECT_THAT(written(), ElementsAre("index.html"));
-}
-
 TEST_F(Site, AFolderOfOtherFilesIsRefused) {
   fs::create_directories(file("site_of_others"));
   write("site_of_others/index.html", "<!DOCTYPE html>");
@@ -158,13 +110,6 @@ TEST_F(Site, AFolderOfOtherFilesIsRefused) {
   EXPECT_EQ(empty.status, 2);
   EXPECT_THAT(empty.err, HasSubstr("has no archive"));
   EXPECT_FALSE(fs::exists(site));
-}
-
-/// Compares an archive with itself.
-TEST_F(Site, AnArchiveBesideItself) {
-  const std::string archive = (results / "a.h5").string();
-  ASSERT_EQ(modebank({"report", archive, archive, "-o", file("both.html").string()}).status, 0);
-  EXPECT_THAT(read_file(file("both.html")), HasSubstr("predict equally well"));
 }
 
 }  // namespace

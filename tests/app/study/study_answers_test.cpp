@@ -104,16 +104,6 @@ TEST(StudyAnswers, MeanNisIsNearestToTheNumberOfStates) {
   EXPECT_EQ(answers.best.back().row, 1U);
 }
 
-TEST(StudyAnswers, SpreadSeparatesRepeatsFromSettings) {
-  const Answers answers = answer(grid());
-  const RepeatSpread& spread = answers.spread.front();
-  EXPECT_EQ(spread.score, "bank_test_log_score");
-  EXPECT_EQ(spread.settings, 4);
-  EXPECT_NEAR(spread.sd, 0.1 / std::sqrt(2.0), 1e-12);
-  EXPECT_NEAR(spread.largest_sd, 0.1 / std::sqrt(2.0), 1e-12);
-  EXPECT_NEAR(spread.between_sd, std::sqrt(4 * 25.25 / 3), 1e-12);
-}
-
 TEST(StudyAnswers, OnlyFinishedTrialsCount) {
   StudyTable table = grid();
   table.rows[0].status = TrialStatus::failed;
@@ -121,7 +111,6 @@ TEST(StudyAnswers, OnlyFinishedTrialsCount) {
   table.rows[2].scores[1] = absent;
   const Answers answers = answer(table);
   EXPECT_EQ(effect(answers, "mixture.components", "2", answers.headline).trials, 1);
-  EXPECT_EQ(answers.spread.front().settings, 2);
   for (TrialRow& row : table.rows) row.status = TrialStatus::failed;
   const Answers nothing = answer(table);
   EXPECT_TRUE(nothing.best.empty());

@@ -6,7 +6,6 @@
 
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
-#include "tests/support/leftover.hpp"
 
 namespace modebank::test {
 namespace {
@@ -48,17 +47,6 @@ class StudyCommands : public CliTest {
   }
 };
 
-TEST_F(StudyCommands, OtherSettingsAndOtherDataAreRefused) {
-  ASSERT_EQ(study_six({"--study.stage", "plan"}).status, 0);
-  const ProgramResult settings = study_six({"--mixture.restarts", "2"});
-  EXPECT_EQ(settings.status, 2);
-  EXPECT_NE(settings.err.find("mixture.restarts '5' -> '2'"), std::string::npos) << settings.err;
-  write("run_00.csv", csv_run(80, 7));
-  const ProgramResult data = study_six();
-  EXPECT_EQ(data.status, 1);
-  EXPECT_NE(data.err.find("run_00.csv has SHA-256"), std::string::npos) << data.err;
-}
-
 TEST_F(StudyCommands, FailuresAreOnRecordAndDoNotStopTheOthers) {
   const std::vector<std::string> keys{"--study.vary", "window.length = 10 | 500 | 12"};
   const ProgramResult result = study(keys);
@@ -66,27 +54,6 @@ TEST_F(StudyCommands, FailuresAreOnRecordAndDoNotStopTheOthers) {
   EXPECT_NE(result.out.find("2 done, 1 failed"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("failed: window.length = 500: "), std::string::npos) << result.out;
   EXPECT_EQ(count(text("s/study.csv"), ",failed,"), 1u);
-}
-
-TEST_F(StudyCommands, DamagedArchivesAreMadeAgain) {
-  ASSERT_EQ(study_six().status, 0);
-  const std::string table = text("s/study.csv");
-  const auto flip = [](const std::filesystem::path& path, long at) {
-    std::fstream stream(path, std::ios::binary | std::ios::in | std::ios::out);
-    stream.seekg(at);
-    const char byte = static_cast<char>(stream.get() ^ 16);
-    stream.seekp(at);
-    stream.put(byte);
-  };
-  const std::vector<std::filesystem::path> damaged{trials()[1], trials()[3]};
-  flip(damaged[0], 5000);
-  flip(damaged[1], 70);  // flips a bit of a byte in the user block
-  for (const auto& path : damaged) EXPECT_EQ(modebank({"verify", path.string()}).status, 1) << path;
-  const std::filesystem::path left = leave_behind(file("s/study.h5"));
-  ASSERT_EQ(study_six().status, 0);
-  EXPECT_EQ(text("s/study.csv"), table);
-  EXPECT_FALSE(std::filesystem::exists(left));
-  for (const auto& path : trials()) EXPECT_EQ(modebank({"verify", path.string()}).status, 0) << path;
 }
 
 /// The page of a study that still runs, or is not merged, shows the finished runs with their scores.
@@ -184,21 +151,6 @@ TEST_F(StudyCommands, FilesOfOthersAreNotWrittenThroughLinks) {
     EXPECT_TRUE(path.extension() == ".failed" || modebank({"verify", path.string()}).status == 0) << path;
 }
 
-/// `trials` and `cache` may be links to another disk.
-TEST_F(StudyCommands, FoldersOnAnotherDiskStayThere) {
-  namespace fs = std::filesystem;
-  for (const char* part : {"trials", "cache"}) {
-    fs::create_directories(file("disk") / part);
-    fs::create_directories(file("s"));
-    fs::create_directory_symlink(file("disk") / part, file("s") / part);
-    write("disk/" + std::string(part) + "/mine.h5", "precious");
-  }
-  ASSERT_EQ(study_six().status, 0);
-  EXPECT_EQ(trials().size(), 7u);
-  EXPECT_TRUE(fs::is_symlink(file("s/trials")));
-  for (const char* part : {"trials", "cache"}) EXPECT_EQ(text("disk/" + std::string(part) + "/mine.h5"), "precious");
-}
-
 TEST_F(StudyCommands, ItsFilesTakeThePlaceOfNoData) {
   const std::string log = text("run_00.csv");
   std::filesystem::create_directory(file("s"));
@@ -213,33 +165,6 @@ TEST_F(StudyCommands, ItsFilesTakeThePlaceOfNoData) {
     EXPECT_NE(foreign.err.find(file(name).string() + " exists and is not replaced"), std::string::npos) << foreign.err;
     EXPECT_EQ(text(name), log);
     std::filesystem::remove(file(name));
-  }
-}
-
-/// Names from topics contain slashes.
-TEST_F(StudyCommands, OfARecordingGoFromStartToItsBestConfiguration) {
-  const std::string script = (project_dir() / "tests/io/recording/topics.py").string();
-  ASSERT_EQ(run_program({"/usr/bin/python3", "-B", script, "write", file("").string()}).status, 0);
-  for (const std::string form : {"bag", "mcap"}) {
-    write("drive.ini", "[data]\ninputs = drive." + form +
-                           "\nstate = /speed.data\ninput = /cmd.data\nrate_hz = 10\n"
-                           "split = last 30 %\n[window]\nlength = 10\n[mixture]\nrestarts = 2\n");
-    const std::string folder = file("of_" + form).string();
-    const std::vector<std::string> words{MODEBANK_PROGRAM,
-                                         "study",
-                                         file("drive.ini").string(),
-                                         "--study.vary",
-                                         "mixture.components = 1 | 2",
-                                         "--study.output",
-                                         folder,
-                                         "--study.jobs",
-                                         "2"};
-    const ProgramResult result = run_program(words);
-    ASSERT_EQ(result.status, 0) << result.err;
-    EXPECT_NE(result.out.find(folder + "/study.csv"), std::string::npos) << result.out;
-    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder) / "study.best.ini"));
-    const ProgramResult best = modebank({"run", folder + "/study.best.ini", "--archive.output", folder + ".h5"});
-    EXPECT_EQ(best.status, 0) << best.err;
   }
 }
 

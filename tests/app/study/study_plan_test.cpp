@@ -6,7 +6,6 @@
 
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
-#include "app/study/run/trial_order.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/app/cli_fixture.hpp"
 
@@ -168,22 +167,6 @@ TEST_F(StudyPlans, ChangedDataAreRefusedWithTheFile) {
   const std::string text = refusal(before, now);
   EXPECT_NE(text.find("run_01.csv has SHA-256"), std::string::npos) << text;
   EXPECT_EQ(text.find("run_00.csv"), std::string::npos) << text;
-}
-
-TEST_F(StudyPlans, TrialsAreGroupedByWhatTheyShare) {
-  const KeyValues keys{{"bank.refine", "none"},  // otherwise a bank would be learned for each filter
-                       {"study.vary", "filter.variant = imm | salvi2025"},
-                       {"study.vary", "bank.stay = 0.9 | 0.95"},
-                       {"study.vary", "mixture.components = 1 | 2 | 3"}};
-  const StudyPlan made = plan(keys);
-  const TrialGroups groups = group_trials(configured(keys), made);
-  ASSERT_EQ(groups.size(), 3u);
-  for (const auto& group : groups) {
-    ASSERT_EQ(group.size(), 4u);
-    for (const std::size_t row : group) EXPECT_EQ(made.table.rows[row].varied[2], made.table.rows[group[0]].varied[2]);
-    EXPECT_EQ(made.table.rows[group[0]].varied[1], made.table.rows[group[1]].varied[1]);  // equal banks
-  }
-  EXPECT_EQ(count_stages(configured(keys), made).banks, 6u);
 }
 
 }  // namespace

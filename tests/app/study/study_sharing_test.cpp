@@ -7,7 +7,6 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -204,17 +203,6 @@ TEST_F(Claims, HoldAmongProcessesAndEndWithThem) {
   EXPECT_EQ(left_behind(), std::vector<std::string>{});
 }
 
-TEST_F(Claims, StateHostProcessAndTime) {
-  const auto claim = Claim::take(path());
-  const auto text = nlohmann::json::parse(bytes_of(path()));
-  EXPECT_EQ(text.at("process"), ::getpid());
-  EXPECT_GT(text.at("start").get<long long>(), 0);
-  char host[256] = "";
-  ::gethostname(host, sizeof host - 1);
-  EXPECT_EQ(text.at("host").get<std::string>().rfind(host, 0), 0U) << text;
-  EXPECT_EQ(text.at("time").get<std::string>().size(), std::string("2026-01-01T00:00:00Z").size());
-}
-
 /// If a process has the same number but another start time, the claim's process is gone.
 TEST_F(Claims, AReusedProcessNumberIsNotTakenForTheHolder) {
   const pid_t other = holder();
@@ -281,37 +269,6 @@ TEST_F(Claims, OtherFilesOfTheNameDoNotStopAStudyForGood) {
   std::filesystem::create_symlink(file("theirs"), path());
   EXPECT_TRUE(Claim::take(path()));
   EXPECT_EQ(bytes_of(file("theirs")), "precious");
-}
-
-TEST(WorkerTasks, AndReportsReachTheOtherProcessWhole) {
-  WorkerTask task{.config = {},
-                  .typed = "modebank study \xff",
-                  .version = "1",
-                  .varied_keys = {"mixture.components"},
-                  .rows = std::vector<TrialRow>(2),
-                  .places = {3, 7},
-                  .threads = 5};
-  task.rows[1].key = "key";
-  task.rows[1].varied = {"2"};
-  task.rows[1].repeat = 4;
-  task.rows[1].seed = std::numeric_limits<std::uint64_t>::max();
-  const WorkerTask read = unpack_task(pack_task(task));
-  EXPECT_EQ(read.typed, task.typed);
-  EXPECT_EQ(read.places, task.places);
-  EXPECT_EQ(read.threads, task.threads);
-  EXPECT_EQ(read.rows[1].varied, task.rows[1].varied);
-  EXPECT_EQ(read.rows[1].repeat, task.rows[1].repeat);
-  EXPECT_EQ(read.rows[1].seed, task.rows[1].seed);
-  TrialReport made{.row = 7, .outcome = TrialOutcome::failed, .message = "two\nlines \xff", .seconds = 1.5};
-  made.stage_seconds[2] = 0.25;
-  const std::string line = pack_report(made);
-  EXPECT_EQ(line.find('\n'), std::string::npos);
-  const TrialReport back = unpack_report(line);
-  EXPECT_EQ(back.row, 7U);
-  EXPECT_EQ(back.outcome, TrialOutcome::failed);
-  EXPECT_EQ(back.message.rfind("two\nlines ", 0), 0U);
-  EXPECT_EQ(back.stage_seconds, made.stage_seconds);
-  EXPECT_TRUE(std::isnan(back.log_score));
 }
 
 }  // namespace

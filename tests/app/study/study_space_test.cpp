@@ -81,15 +81,6 @@ TEST(VaryText, ErrorsSayWhatIsWrong) {
   for (const auto& [line, part] : cases) EXPECT_NE(reason(line).find(part), std::string::npos) << reason(line);
 }
 
-TEST(VaryText, FileErrorsNameTheLine) {
-  try {
-    resolved_config("[study]\nvary = mixture.component = 3\n");
-    FAIL();
-  } catch (const ConfigurationError& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean mixture.components"), std::string::npos) << error.what();
-  }
-}
-
 TEST(StudySpace, GridVariesTheLastKeyFastest) {
   const StudySpace space = lay_out(with({"mixture.components = 2 | 3", "filter.variant = imm | kf | salvi2025"}));
   EXPECT_EQ(space.keys, (Texts{"mixture.components", "filter.variant"}));

@@ -1,9 +1,6 @@
 #include <sys/stat.h>
 
-#include <algorithm>
 #include <cstdint>
-#include <cstdlib>
-#include <fstream>
 #include <map>
 #include <random>
 
@@ -22,7 +19,7 @@ constexpr unsigned parts = 5;
 INSTANTIATE_TEST_SUITE_P(Of5, StudySurvivalPart, ::testing::Range(0U, parts));
 
 /// All parts together run ten studies. Each is killed three times, at random changes of its folder, alternately with
-/// and without its children. Children that survive work beside the next process.
+/// and without its children. Children that survive work beside the next process. At last it moves to another folder.
 TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
   run_undisturbed();
   const std::string expected = numbers(undisturbed);
@@ -39,51 +36,15 @@ TEST_P(StudySurvivalPart, ThirtyKillsChangeNoNumber) {
         process.kill_with_children();
       process.wait();
     }
-    const ProgramResult resumed = study(folder);
+    const std::string moved = "moved_" + std::to_string(round);
+    std::filesystem::rename(file(folder), file(moved));
+    const ProgramResult resumed = study(moved);
     ASSERT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_EQ(numbers(folder), expected) << "round " << round;
-    std::filesystem::remove_all(file(folder));
+    EXPECT_EQ(numbers(moved), expected) << "round " << round;
+    EXPECT_FALSE(std::filesystem::exists(file(folder)));
+    EXPECT_TRUE(trial_files(moved, ".claim").empty());
+    std::filesystem::remove_all(file(moved));
   }
-}
-
-/// Number of repeats of the 24 settings. In `make nightly` it is 42, which gives 1,008 trials.
-std::string repeats() {
-  const char* asked = std::getenv("MODEBANK_STUDY_REPEATS");
-  return asked ? asked : "4";
-}
-
-/// Twenty workers of a running study are killed, each while it makes a trial. Each of these trials is recorded as
-/// failed or is done by another worker. The next study completes them. After ten kills, the study moves to another
-/// folder.
-TEST_F(StudySurvival, TwentyKilledWorkersAndAMoveChangeNoNumber) {
-  const std::vector<std::string> many{"--study.repeats", repeats(), "--study.jobs", "2"};
-  ASSERT_EQ(study(undisturbed, many).status, 0);
-  const std::size_t all = archives(undisturbed).size();
-  std::mt19937_64 generator(20261127);
-  constexpr int kills = 10;
-  const auto kill_some = [&](const std::string& folder) {
-    for (int killed = 0; killed < kills;) {
-      // If all trials are done, one archive is removed, so that a worker has work and can be killed.
-      if (archives(folder).size() == all) std::filesystem::remove(archives(folder).front());
-      Process process(study_line(folder, many));
-      while (killed < kills && process.running()) {
-        wait_for_changes(folder, static_cast<unsigned>(generator() % 10), process);
-        killed += !archives(folder).empty() && kill_a_worker(folder, generator);
-      }
-      process.kill_alone();
-      process.wait();
-    }
-  };
-  kill_some("killed");
-  EXPECT_GT(archives("killed").size(), 0U);
-  std::filesystem::rename(file("killed"), file("moved"));
-  kill_some("moved");
-  const ProgramResult resumed = study("moved", many);
-  ASSERT_EQ(resumed.status, 0) << resumed.err;
-  EXPECT_EQ(archives("moved").size(), all);
-  EXPECT_EQ(numbers("moved"), numbers(undisturbed));
-  EXPECT_FALSE(std::filesystem::exists(file("killed")));
-  EXPECT_TRUE(trial_files("moved", ".claim").empty());
 }
 
 /// Identity of a file. A file that is made again has another one.
@@ -110,42 +71,6 @@ TEST_F(StudySurvival, AKilledWorkerEndsItsTrialOnly) {
   EXPECT_EQ(archives("one").size(), trials);
   for (const auto& [path, inode] : before) EXPECT_EQ(identity(path), inode) << path << " was done again";
   EXPECT_TRUE(trial_files("one", ".failed").empty());
-}
-
-void flip_a_bit(const std::filesystem::path& path, std::mt19937_64& generator) {
-  std::fstream stream(path, std::ios::in | std::ios::out | std::ios::binary);
-  const auto at = static_cast<std::streamoff>(generator() % std::filesystem::file_size(path));
-  stream.seekg(at);
-  char byte = 0;
-  stream.get(byte);
-  stream.seekp(at);
-  stream.put(static_cast<char>(byte ^ static_cast<char>(1U << (generator() % 8))));
-}
-
-/// All parts together flip 200 bits, one in each archive of a round, except in two archives. `verify` must refuse the
-/// damaged archives. The next `study` repeats only these, and the table is the same as before.
-TEST_P(StudySurvivalPart, TwoHundredFlippedBitsAreFoundAndRedone) {
-  constexpr int flips_of_part = 200 / parts;
-  run_undisturbed();
-  const std::string expected = numbers(undisturbed);
-  std::mt19937_64 generator(7 + GetParam());
-  int flips = 0;
-  while (flips < flips_of_part) {
-    std::vector<std::filesystem::path> paths = archives(undisturbed);
-    std::shuffle(paths.begin(), paths.end(), generator);
-    const std::vector<std::filesystem::path> whole(paths.end() - 2, paths.end());
-    paths.resize(std::min<std::size_t>(paths.size() - 2, static_cast<std::size_t>(flips_of_part - flips)));
-    std::map<std::filesystem::path, ino_t> before;
-    for (const auto& path : whole) before[path] = identity(path);
-    for (const auto& path : paths) flip_a_bit(path, generator);
-    flips += static_cast<int>(paths.size());
-    for (const auto& path : paths) EXPECT_EQ(modebank({"verify", path.string()}).status, 1) << path;
-    const ProgramResult resumed = study(undisturbed);
-    ASSERT_EQ(resumed.status, 0) << resumed.err;
-    EXPECT_EQ(numbers(undisturbed), expected);
-    for (const auto& [path, inode] : before) EXPECT_EQ(identity(path), inode) << path << " was whole and done again";
-    for (const auto& path : paths) EXPECT_EQ(modebank({"verify", path.string()}).status, 0) << path;
-  }
 }
 
 /// With small_disk.c preloaded, the disk accepts only a limited number of bytes.

@@ -29,56 +29,6 @@ Finding finding_of(Answer answer) {
   return finding;
 }
 
-TEST(FindingText, EvidenceNamesGainErrorAndTheOtherExplanation) {
-  Finding finding = finding_of(Answer::evidence);
-  EXPECT_EQ(finding_text(finding),
-            "Switching between 3 linear models predicts the 6 held-out runs better than the best single model "
-            "(`one_motion`: one linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 "
-            "nats per sample; more than 0.103 passes). A single nonlinear model can give the same gain.");
-  finding.terms_asked = true;
-  EXPECT_THAT(finding_text(finding), Not(HasSubstr("nonlinear"))) << "no term gained on the training runs";
-}
-
-TEST(FindingText, ModesAndABendThatBothGainAreBothNamed) {
-  for (const Answer answer : {Answer::evidence, Answer::no_evidence}) {
-    Finding finding = finding_of(answer);
-    finding.terms_asked = true;
-    finding.over_linear = "noise_only";
-    finding.bank_over_linear = 0.45;
-    finding.nonlinear_over_linear = 0.21;
-    EXPECT_THAT(finding_text(finding), HasSubstr(" Over `noise_only` one nonlinear model gains +0.210 nats per sample, "
-                                                 "and the 3 linear models gain +0.450."));
-  }
-}
-
-TEST(FindingText, NoEvidenceNamesWhatDescribesTheRunsInstead) {
-  Finding finding = finding_of(Answer::no_evidence);
-  finding.better_description = "drifting";
-  finding.description_loss = 0.012;
-  EXPECT_THAT(finding_text(finding),
-              AllOf(StartsWith("No evidence for modes of motion: switching between 3 linear models"),
-                    HasSubstr(" The simpler model (`drifting`: one linear model whose parameters wander) may describe "
-                              "these runs as well, and is about as good as `one_motion` (-0.012 nats per sample).")));
-  finding.better_description = "one_motion";
-  EXPECT_THAT(finding_text(finding), HasSubstr(" The single model `one_motion` may describe these runs as well."));
-  finding.gains.front().gain = finding.gain = -0.2;  // e^-0.2 = 0.819
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("worse than the best single model"),
-                                           HasSubstr("each sample is 18.1 % less likely (-0.200 +- 0.040"),
-                                           Not(HasSubstr("describes these runs"))));
-  finding.modes_differ = false;
-  EXPECT_THAT(finding_text(finding),
-              HasSubstr("the parameters of the modes differ by no more than their errors. Switching"));
-  finding.errors_known = false;
-  EXPECT_THAT(finding_text(finding), Not(HasSubstr("than their errors")));
-}
-
-TEST(FindingText, OneMotionThatDriftsIsCalledSo) {
-  Finding finding = finding_of(Answer::no_evidence);
-  finding.one_motion_drifts = true;
-  finding.better_description = "one_motion";
-  EXPECT_THAT(finding_text(finding), HasSubstr("(`one_motion`: one linear model that wanders, with changing noise)"));
-}
-
 TEST(FindingText, WhatCannotBeToldSaysWhy) {
   Finding finding = finding_of(Answer::cannot_tell);
   // The gain over the best competitor is 7.6 standard errors, but the gain over another competitor may be chance. The
@@ -153,22 +103,6 @@ TEST(FindingText, APatternNamesTheKeyThatLooksForLags) {
       AllOf(HasSubstr("not judged yet: the bank's errors follow a pattern. Lags would gain +0.121 +- 0.015 nats "
                       "per sample on training runs; `--window.model auto` searches for them."),
             Not(HasSubstr("evidence")), Not(HasSubstr("scatter"))));
-}
-
-TEST(FindingText, AnErrorFromStretchesSaysSo) {
-  Finding finding = finding_of(Answer::evidence);
-  EXPECT_THAT(finding_text(finding), Not(HasSubstr("stretches")));
-  finding.gains = {{"one_motion", 700, 0.1344, 0.0402, 11.0, 0.1034, true}};
-  EXPECT_THAT(finding_text(finding), HasSubstr("nats per sample; more than 0.103 passes; error from 12 stretches)."));
-  finding.stretches = true;
-  EXPECT_THAT(finding_text(finding), HasSubstr("held-out stretches better than"));
-}
-
-/// The sentence names only one competitor. The screen gives the errors of the same competitor.
-TEST(FindingText, NamesOneCompetitorAlone) {
-  Finding finding = finding_of(Answer::evidence);
-  finding.better_means = {{"noise_only", 1, "", 0.0145, 0.0141}};
-  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("one_motion"), Not(HasSubstr("noise_only"))));
 }
 
 /// e^0.287 = 1.332, e^-0.035 = 0.9656, e^0.0198 = 1.02, e^5 = 148.4.

@@ -5,7 +5,6 @@
 
 #include <cmath>
 
-#include "app/text/mode_tables.hpp"
 #include "tests/app/text/screen_archive.hpp"
 
 namespace modebank::test {
@@ -14,8 +13,6 @@ namespace {
 using app::mode_families;
 using app::ModeFamily;
 using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Not;
 
 /// Scalar modes with gain 0.8 at a sample period of 0.1 s. `left`: factor of the state per sample. `errors`: standard
 /// errors of A.
@@ -104,20 +101,6 @@ TEST(ModeFamilies, ModesOfOneNameAreOneByUse) {
   EXPECT_THAT(certain.modes, ElementsAre(0, 2));
   EXPECT_THAT(certain.counted, ElementsAre(2));
   EXPECT_NEAR(certain.slowest.time_constant_s, fast, 1e-9);
-}
-
-TEST(ModeFamilies, HaveARowOfTheTableAndALineOfShow) {
-  Archive archive = scalar_modes({0.9, 0.3, 0.6}, {0.01, 0.01, 0.01});
-  archive.mode_names = {"ice", "grip", "ice"};
-  const std::string table = app::short_modes(archive, 9, 100).text, shown = app::modes_in_words(archive);
-  EXPECT_THAT(table, testing::MatchesRegex("family \\(modes\\) .*\n"
-                                           "ice \\(0, 2\\) +68.0 % .*\n"
-                                           "grip \\(1\\) +30.0 % .*\n"));
-  EXPECT_THAT(shown, HasSubstr("families of modes"));
-  EXPECT_THAT(shown, HasSubstr("ice (modes 0, 2)"));
-  archive.mode_names.clear();
-  EXPECT_THAT(app::short_modes(archive, 9, 100).text, HasSubstr("mode "));
-  EXPECT_THAT(app::modes_in_words(archive), Not(HasSubstr("families")));
 }
 
 }  // namespace

@@ -3,16 +3,12 @@
 
 #include <gmock/gmock.h>
 
-#include "app/text/confusion_text.hpp"
-#include "app/text/mode_tables.hpp"
-#include "app/text/summary_tables.hpp"
 #include "tests/app/text/screen_archive.hpp"
 
 namespace modebank::test {
 namespace {
 
 using testing::ElementsAre;
-using testing::HasSubstr;
 using testing::IsEmpty;
 
 class Warnings : public Listener {
@@ -44,14 +40,6 @@ TEST(ModeNames, AreTheLabelsOfSixtyPercentOfTheSamples) {
   EXPECT_THAT(mode_names_of(archive, {"a"}, warnings), IsEmpty());
 }
 
-TEST(ModeNames, AWrongCountIsSaidAndCostsNoRun) {
-  const Warnings fewer, more;
-  EXPECT_THAT(mode_names_of(labelled(), {"wet"}, fewer), ElementsAre("wet", "", "grip"));
-  EXPECT_EQ(fewer.said, "bank.mode_names has 1 name, but the bank has 3 modes: it names only the first modes\n");
-  EXPECT_THAT(mode_names_of(labelled(), {"a", "b", "c", "d"}, more), ElementsAre("a", "b", "c"));
-  EXPECT_EQ(more.said, "bank.mode_names has 4 names, but the bank has 3 modes: its last names are not used\n");
-}
-
 TEST(ModeNames, StandBesideNumbersOnOneLine) {
   const std::vector<std::string> names{"ice", "", "a\n\x1b[31mb"};
   EXPECT_EQ(mode_cell(names, 0), "0 ice");
@@ -59,19 +47,6 @@ TEST(ModeNames, StandBesideNumbersOnOneLine) {
   EXPECT_EQ(mode_cell(names, 1), "1");
   EXPECT_EQ(mode_title(names, 7), "mode 7");
   EXPECT_EQ(mode_cell(names, 2), "2 a  [31mb");
-}
-
-TEST(ModeNames, StandWhereverModesAreListed) {
-  Archive archive = labelled();
-  archive.mode_names = {"ice", "", "grip"};
-  for (const std::string& text : {app::modes_in_words(archive), app::short_modes(archive, 9, 200).text,
-                                  app::modes_text(archive, false), app::mode_diagnostics_text(archive)}) {
-    EXPECT_THAT(text, HasSubstr("0 ice "));
-    EXPECT_THAT(text, HasSubstr("2 grip"));
-  }
-  const std::string confusion = app::confusion_text(archive, 0);
-  EXPECT_THAT(confusion, HasSubstr("mode 0: ice"));
-  EXPECT_THAT(confusion, HasSubstr("50.4 %"));  // 60 of 119 samples
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "app/text/mode_tables.hpp"
 #include "tests/app/text/screen_archive.hpp"
 
 namespace modebank::test {

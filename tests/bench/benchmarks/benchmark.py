@@ -14,7 +14,6 @@ import h5py
 import numpy as np
 
 SOURCES = pathlib.Path(__file__).resolve().parents[3]
-sys.path.insert(0, str(SOURCES / "tests" / "bench"))
 
 
 class Arguments:
@@ -82,10 +81,6 @@ def numbers(value, digits):
     return " ".join(f"{v:.{digits}f}" for v in np.atleast_1d(value))
 
 
-def significant(value, digits=3):
-    return " ".join(f"{v:#.{digits}g}" for v in np.atleast_1d(value))
-
-
 def modes(archive):
     with h5py.File(archive) as file:
         return len(file["bank/A"])
@@ -103,13 +98,9 @@ def provenance(program):
             f"{datetime.datetime.now(datetime.timezone.utc):%Y-%m-%d}; {machine}")
 
 
-def preamble(program, title, protocol):
-    print(f"## {title}\n\n{protocol.strip()}\n\n{provenance(program)}\n", flush=True)
-
-
 def head(program, title, protocol, columns):
     """Prints title, protocol, provenance and the head of the table."""
-    preamble(program, title, protocol)
+    print(f"## {title}\n\n{protocol.strip()}\n\n{provenance(program)}\n")
     print("| " + " | ".join(columns) + " |\n|" + "---|" * len(columns), flush=True)
 
 

@@ -134,16 +134,6 @@ TEST(Combination, HeldOutRunsStartWithStackedWeights) {
   EXPECT_NEAR(rows.back().log_score, run.predictions.log_density.row(0).tail(N - 1).mean(), combined_digits);
 }
 
-/// A run that is too short to compare the filters. Its score must be almost that of the filter that was best in
-/// training.
-TEST(Combination, ShortRunsKeepWhatTrainingFound) {
-  const HorizonEvaluation good = forecasts(30, {10}, 6, 1.0), bad = forecasts(30, {10}, 7, 3.0);
-  const std::vector<double> start =
-      stacked_weights({(Eigen::MatrixXd(2, 30) << good.log_density.row(0), bad.log_density.row(0)).finished()});
-  const CombinedForecasts together = combine_forecasts({&good, &bad}, {start});
-  EXPECT_GT(together.predictions.log_density.row(0).tail(20).mean(), good.log_density.row(0).tail(20).mean() - 0.02);
-}
-
 TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   const HorizonEvaluation a = forecasts(60, {1, 5}, 10, 1.0), b = forecasts(60, {1, 5}, 11, 2.0);
   const std::vector<LeftOutRow> rows = left_out_rows({"bank", "baseline"}, {{a, b}, {b, a}});

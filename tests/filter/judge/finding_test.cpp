@@ -262,28 +262,6 @@ TEST(Finding, StepsThatScatterComeBeforeModes) {
   EXPECT_TRUE(finding.better_description.empty());
 }
 
-// Modes that switch by state and input are also one nonlinear motion.
-TEST(Finding, ModesAndABendThatBothGainAreBothNamed) {
-  Case modes;
-  EXPECT_TRUE(modes.judged().over_linear.empty()) << "nothing bends";
-  modes.competitors.push_back(scores_of("nonlinear", 0.15));
-  const Finding claimed = modes.judged();
-  EXPECT_EQ(claimed.answer, Answer::evidence);
-  EXPECT_EQ(claimed.over_linear, "noise_only");
-  EXPECT_NEAR(claimed.bank_over_linear, 0.2, 0.01);
-  EXPECT_NEAR(claimed.nonlinear_over_linear, 0.05, 0.01);
-  Case bent = modes;
-  bent.competitors.back() = scores_of("nonlinear", 0.4);
-  const Finding described = bent.judged();
-  EXPECT_EQ(described.description, Description::one_nonlinear_motion);
-  EXPECT_EQ(described.over_linear, "noise_only");
-  EXPECT_NEAR(described.nonlinear_over_linear, 0.3, 0.01);
-  bent.bank_gain = 0.11;
-  EXPECT_TRUE(bent.judged().over_linear.empty()) << "modes gain next to nothing";
-  modes.competitors.back() = scores_of("nonlinear", 0.11);
-  EXPECT_TRUE(modes.judged().over_linear.empty()) << "the bend gains next to nothing";
-}
-
 // Gains over competitors that lack the same lags are weak evidence for modes. A pattern counts if it gains 0.02 nats
 // and two standard errors.
 TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {

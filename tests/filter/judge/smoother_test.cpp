@@ -19,7 +19,6 @@ using Eigen::Index;
 using test::example_bank;
 using test::near;
 using test::simulate_bank;
-using test::simulate_truth;
 using test::single_mode;
 
 RunEvaluation smoothed(const Bank& bank, const Trajectory& run, const FilterOptions& options = {}) {
@@ -84,20 +83,6 @@ TEST(Smoother, IdenticalModesAreOneSmoother) {
   const RunEvaluation e = smoothed(bank, run, {});
   EXPECT_TRUE(near(e.smoothed_state, one.smoothed_state, 1e-12));
   EXPECT_TRUE(near(e.smoothed_covariance, one.smoothed_covariance, 1e-12));
-}
-
-double rms(const Eigen::MatrixXd& a) { return std::sqrt(a.squaredNorm() / static_cast<double>(a.size())); }
-
-TEST(Smoother, IsCloserToTheTruthThanTheFilter) {
-  Bank bank = example_bank(2, 1, 2, 4e-3);  // the measurement noise is as large as a step of the state
-  bank.transition = TransitionMatrix::sticky(2, 0.97);
-  for (const std::uint64_t seed : {1, 2, 3}) {
-    const auto [run, mode] = simulate_truth(bank, 2000, seed);
-    const RunEvaluation e = smoothed(bank, run);
-    const double filter = rms(e.state - run.truth), smoother = rms(e.smoothed_state - run.truth);
-    EXPECT_LT(smoother, 0.95 * filter) << filter << " to " << smoother;
-    EXPECT_LT(e.smoothed_covariance.row(0).mean(), e.covariance.row(0).mean());
-  }
 }
 
 TEST(Smoother, KeepsToItsStretchWhereTheFilterStartsAnew) {
@@ -257,27 +242,6 @@ TEST(Viterbi, KeepsToTheFiltersNoiseScale) {
     differing += found != best_sequence(bank, run, Eigen::VectorXd::Ones(7));
   }
   EXPECT_GT(differing, 0) << "the scale decides nothing here";
-}
-
-TEST(Viterbi, FindsTheTrueModes) {
-  Bank bank = example_bank(1, 2, 3, 1e-6);
-  bank.transition = TransitionMatrix::sticky(3, 0.97);
-  const auto [run, mode] = simulate_truth(bank, 2000, 7);
-  const RunEvaluation e = smoothed(bank, run);
-  const auto right = [&](const Eigen::VectorXi& found) {
-    return (found.array() == mode.array()).cast<double>().mean();
-  };
-  Eigen::VectorXi filtered(run.samples());
-  for (Index k = 0; k < run.samples(); ++k) e.mode_probability.col(k).maxCoeff(&filtered(k));
-  EXPECT_GT(right(e.viterbi_mode), 0.9);
-  EXPECT_GT(right(e.viterbi_mode), right(filtered));
-}
-
-TEST(Viterbi, NeverChangesWhatNeverSwitches) {
-  Bank bank = example_bank(1, 2, 3);
-  bank.transition = TransitionMatrix::sticky(3, 1.0);
-  const RunEvaluation e = smoothed(bank, simulate_bank(single_mode(bank, 1), 300, 25));
-  EXPECT_TRUE((e.viterbi_mode.array() == 1).all());
 }
 
 TEST(Horizon, OneSampleAheadIsWhatTheFilterSays) {

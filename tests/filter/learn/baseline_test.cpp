@@ -1,6 +1,5 @@
 // Q and R of the baseline by maximum likelihood.
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <Eigen/LU>
 #include <array>
@@ -212,17 +211,6 @@ TEST(Baseline, WithoutTrainingRunsIsAnError) {
   global.covariance.setZero(2, 2);
   global.residual_covariance.setOnes(1, 1);
   EXPECT_THROW(learn(recording, global), DataError);
-}
-
-TEST(Baseline, IsTheSameForAnyNumberOfThreads) {
-  const Recording recording = simulated(single_filter(-0.3, 0.04, 0.01), 5, 80);
-  const GlobalModel global = fit_global(recording, test::structure_of(recording));
-  const Baseline parallel = learn(recording, global);
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Baseline serial = learn(recording, global);
-  EXPECT_EQ(parallel.bank.modes[0].Q, serial.bank.modes[0].Q);
-  EXPECT_EQ(parallel.bank.R, serial.bank.R);
-  EXPECT_EQ(parallel.log_likelihood, serial.log_likelihood);
 }
 
 }  // namespace

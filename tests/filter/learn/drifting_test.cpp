@@ -2,7 +2,6 @@
 #include "filter/judge/run/drifting.hpp"
 
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
@@ -78,20 +77,6 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   }
 }
 
-TEST(DriftingLearning, IsTheSameForAnyNumberOfThreads) {
-  const Bank truth = example_drifting(2, 1, 2);
-  const Recording recording = drifting_recording(truth, 3, 80);
-  const Bank many = learn_all(recording, truth.structure);
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const Bank one = learn_all(recording, truth.structure);
-  EXPECT_EQ(many.drift.rates, one.drift.rates);
-  EXPECT_EQ(many.running_noise.lam, one.running_noise.lam);
-  EXPECT_EQ(many.running_noise.nu, one.running_noise.nu);
-  EXPECT_EQ(many.running_noise.floor, one.running_noise.floor);
-  EXPECT_EQ(many.running_noise.horizon_factor, one.running_noise.horizon_factor);
-  EXPECT_EQ(many.drift.tuning.log_score, one.drift.tuning.log_score);
-}
-
 /// Gain of drifting coefficients over constant ones on the training runs [nats/sample].
 double gain_by_drift(const Bank& truth) {
   const Recording recording = drifting_recording(truth, 4, 600);
@@ -108,19 +93,6 @@ TEST(DriftingLearning, FindsDriftWhereThereIsSomeAndNoneWhereThereIsNone) {
   EXPECT_GT(gain_by_drift(truth), 0.05);
   truth.drift.rates = {0.0, 0.0, 1.0};
   EXPECT_LT(gain_by_drift(truth), 2e-3) << "4 free coefficients fit 2400 samples by chance that well";
-}
-
-TEST(DriftingLearning, EqualsAreTheFirstOfTheGrid) {
-  Bank truth = example_drifting(1, 1, 1);
-  truth.running_noise.nu = 0.0;
-  truth.drift.rates = {0.0, 0.0, 1.0};
-  DriftingGrid grid;
-  grid.q = {0.0};
-  grid.p0 = {0.0};
-  grid.lam = {0.96};
-  const Bank model = learn_all(drifting_recording(truth, 2, 300), truth.structure, grid);
-  EXPECT_EQ(model.drift.rates.leak, 1.0);
-  EXPECT_EQ(model.running_noise.floor, 1e-6 * model.noise_variance());
 }
 
 TEST(DriftingLearning, NoOtherFactorMakesAHorizonMoreLikely) {

@@ -1,7 +1,6 @@
 // Banks from mixtures: laws, sources of theta, Q, R and T, and screening.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <tbb/global_control.h>
 
 #include <boost/random/normal_distribution.hpp>
 #include <random>
@@ -243,19 +242,6 @@ TEST(LearnBank, BadArgumentsAreNamed) {
                std::invalid_argument);
   data.fits.structure.inputs = 2;
   EXPECT_THROW(data.learn(), std::invalid_argument);
-}
-
-TEST(LearnBank, IsTheSameForAnyNumberOfThreads) {
-  Case data({-0.2, -0.5, -0.8});
-  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 0.3);
-  const Bank parallel = data.learn();
-  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
-  const Bank serial = data.learn();
-  for (Index j = 0; j < 3; ++j) {
-    EXPECT_EQ(parallel.theta(j), serial.theta(j));
-    EXPECT_EQ(parallel.modes[j].Q, serial.modes[j].Q);
-    EXPECT_EQ(parallel.modes[j].standard_error, serial.modes[j].standard_error);
-  }
 }
 
 }  // namespace

@@ -52,17 +52,6 @@ TEST(Memberships, UncoveredTransitionsTakeTheNearestClusteredWindow) {
   EXPECT_TRUE(near(g.rowwise().sum(), Eigen::VectorXd::Ones(13), weight_rounding));
 }
 
-TEST(Memberships, TheEarlierOfTwoEquallyNearWindowsWins) {
-  const Recording recording = two_runs(5, 1);
-  const WindowFits fits = test::windows_of(recording, 2, 1);  // starts 0 .. 3
-  Eigen::MatrixXd gamma = Eigen::MatrixXd::Constant(2, fits.count(), not_a_number);
-  gamma.col(0) << 1.0, 0.0;  // covers transitions 0 and 1
-  gamma.col(3) << 0.0, 1.0;  // covers transitions 3 and 4
-  const TrainingTransitions transitions = gather_training_transitions(recording, fits.structure);
-  const Eigen::MatrixXd g = transition_memberships(transitions, fits, test::mixture_of(fits, gamma));
-  EXPECT_TRUE(near(g.row(2), Eigen::RowVector2d(1.0, 0.0), weight_rounding));
-}
-
 TEST(Memberships, MissingSamplesBelongToNoMode) {
   Recording recording = two_runs(5, 3);
   const WindowFits fits = test::windows_of(recording, 3, 1);

@@ -77,15 +77,6 @@ TEST(WeightedMode, PriorMaximisesThePenalisedLikelihood) {
   EXPECT_TRUE(near(slope.reshaped(), pull, 1e-7 * pull.norm())) << "the gradient is zero";
 }
 
-TEST(WeightedMode, WithOneModeAndNoPriorIsTheGlobalModel) {
-  const WeightedData data;
-  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(data.transitions.count());
-  const ModeEstimate mode = fit_weighted_mode(data.transitions, ones, data.global, nullptr);
-  EXPECT_TRUE(near(mode.theta, data.global.theta, exact));
-  EXPECT_TRUE(near(mode.Q, data.global.residual_covariance, exact));
-  EXPECT_TRUE(near(mode.standard_error, data.global.covariance.diagonal().cwiseSqrt(), exact));
-}
-
 TEST(WeightedMode, WithoutWeightStaysAtTheGlobalModel) {
   const WeightedData data;
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(data.transitions.count());
@@ -131,33 +122,6 @@ TEST(WeightedMode, NoiseIsFlooredWhereAModeFitsExactly) {
   const ModeEstimate mode = fit_weighted_mode(data.transitions, weights, data.global, nullptr);
   const Eigen::MatrixXd floor = process_noise_floor * data.global.noise_variance().asDiagonal().toDenseMatrix();
   EXPECT_TRUE(near(mode.Q, floor, 1e-6 * floor.maxCoeff()));
-}
-
-TEST(AssessedMode, TakesNoiseAboutTheGivenTheta) {
-  const WeightedData data;
-  const Eigen::VectorXd theta = data.global.theta.array() + 0.1;
-  const ModeEstimate mode = assess_weighted_mode(data.transitions, data.weights, data.global, nullptr, theta);
-  const Eigen::MatrixXd r =
-      data.transitions.data.increments - data.transitions.data.regressors * coefficients(data.structure, theta);
-  EXPECT_TRUE(near(mode.theta, theta, 0.0));
-  EXPECT_TRUE(near(mode.Q, r.transpose() * data.weights.asDiagonal() * r / data.weights.sum(), exact));
-}
-
-TEST(PooledModes, KnownMembershipsGiveSeparateRegressions) {
-  const WeightedData data;
-  const Index N = data.transitions.count();
-  Eigen::MatrixXd memberships = Eigen::MatrixXd::Zero(N, 2);
-  for (Index k = 0; k < N; ++k) memberships(k, k % 2) = 1.0;
-  const std::vector<ModeEstimate> modes = fit_pooled_modes(data.transitions, memberships, data.global, nullptr);
-  for (Index mode = 0; mode < 2; ++mode) {
-    const auto rows = Eigen::seq(mode, N - 1, 2);
-    const Eigen::MatrixXd X = data.transitions.data.regressors(rows, Eigen::all);
-    const Eigen::MatrixXd D = data.transitions.data.increments(rows, Eigen::all);
-    const Eigen::MatrixXd beta = (X.transpose() * X).inverse() * X.transpose() * D;
-    const Eigen::MatrixXd r = D - X * beta;
-    EXPECT_TRUE(near(modes[mode].theta, beta.reshaped(), exact)) << "mode " << mode;
-    EXPECT_TRUE(near(modes[mode].Q, r.transpose() * r / static_cast<double>(X.rows()), exact)) << "mode " << mode;
-  }
 }
 
 }  // namespace

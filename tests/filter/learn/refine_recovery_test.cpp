@@ -75,43 +75,6 @@ TEST(MaximiseLikelihood, EndsWhereNoStepGains) {
     }
 }
 
-TEST(BankCoordinates, AreZeroAtTheirOriginAndMoveOneThetaTogether) {
-  const Bank truth = test::true_pair(1.0);
-  const BankCoordinates free(truth, everything(truth, 0.1));
-  EXPECT_EQ(free.size(), 2 * 8 + 2 * 3 + 2 + 2);
-  const Bank same = free.decode(Eigen::VectorXd::Zero(free.size()));
-  for (std::size_t j = 0; j < 2; ++j) {
-    EXPECT_TRUE(same.modes[j].Q.isApprox(truth.modes[j].Q, 1e-14));
-    EXPECT_EQ(same.theta(static_cast<Index>(j)), truth.theta(static_cast<Index>(j)));
-  }
-  EXPECT_TRUE(same.R.isApprox(truth.R, 1e-14));
-  EXPECT_TRUE(same.transition.matrix().isApprox(truth.transition.matrix(), 1e-14));
-
-  FreeParameters one_theta = everything(truth, 0.1);
-  one_theta.theta_unit = one_theta.theta_unit.leftCols(1).eval();
-  const BankCoordinates together(truth, one_theta);
-  EXPECT_EQ(together.size(), 8 + 2 * 3 + 2 + 2);
-  const Bank moved = together.decode(2.0 * Eigen::VectorXd::Unit(together.size(), 3));
-  for (Index j = 0; j < 2; ++j) EXPECT_NEAR(moved.theta(j)(3), truth.theta(j)(3) + 0.2, 1e-14);
-}
-
-TEST(BankCoordinates, HoldWhatIsKnownAndScaleQByOneFactor) {
-  const Bank truth = test::true_pair(1.0);
-  FreeParameters noise;
-  noise.Q_by_one_factor = true;
-  noise.R = {1};
-  noise.least_R = Eigen::Vector2d(0.0, 0.01);
-  noise.transition = false;
-  const BankCoordinates around(truth, noise);
-  ASSERT_EQ(around.size(), 2);
-  const Bank moved = around.decode(Eigen::Vector2d(std::log(2.0), std::log(3.0)));
-  for (std::size_t j = 0; j < 2; ++j) EXPECT_TRUE(moved.modes[j].Q.isApprox(2.0 * truth.modes[j].Q, 1e-14));
-  EXPECT_EQ(moved.R(0, 0), truth.R(0, 0));
-  EXPECT_NEAR(moved.R(1, 1), 0.01 + 3.0 * (truth.R(1, 1) - 0.01), 1e-15);
-  EXPECT_EQ(moved.theta(1), truth.theta(1));
-  EXPECT_EQ(moved.transition.matrix(), truth.transition.matrix());
-}
-
 /// If modes hardly move, a starting value of R (a share of Q) is below R's bound for some outputs. Variances must not
 /// become negative.
 TEST(BankCoordinates, KeepRAtItsBound) {

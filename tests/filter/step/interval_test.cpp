@@ -155,21 +155,6 @@ TEST(Interval, UnrelatedSignalsAreTakenInApart) {
   }
 }
 
-TEST(Interval, TransformIsUniformInATrueFilter) {
-  const Index samples = 20000;
-  Bank bank = test::example_bank(1, 1, 2, 0.0);
-  bank.modes[0].Q(0, 0) = bank.modes[1].Q(0, 0) = 1e-2;
-  for (const double deviations : {0.3, 1.0, 3.0}) {
-    const double quantum = 0.1 * deviations;
-    const Trajectory run = rounded(test::simulate_bank(bank, samples, 6), quantum);
-    RunEvaluation evaluation = evaluate_run(with_quantum(bank, quantum), run, {});
-    draw_pit(run, 1, evaluation);
-    std::vector<double> pit(evaluation.pit.data() + 1, evaluation.pit.data() + samples);
-    constexpr double one_per_mille = 1.95;  // Kolmogorov's distribution
-    EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples))) << deviations;
-  }
-}
-
 /// The transform that programs get, sample by sample and for a whole run. The quantum is three standard deviations.
 TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
   const Index samples = 20000;

@@ -120,22 +120,6 @@ TEST(MissingMeasurement, OfSomeSignalsMovesTheNoiseScaleByTheOthers) {
   EXPECT_NEAR(filter.snapshot().noise_scale, scale, digits * 10 * scale);
 }
 
-TEST(MissingMeasurement, HasNoScoreInAnyForm) {
-  Bank bank = example_bank(2, 1, 3);
-  Trajectory run = simulate_bank(bank, 8, 21);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::kf}) {
-    BankFilter filter(test::steppable(bank, variant), {variant});
-    filter.step(0.0, run.input.col(0), run.state.col(0));
-    EXPECT_FALSE(std::isnan(filter.step(1.0, run.input.col(1), run.state.col(1)).log_density));
-    EXPECT_GE(filter.estimate().nis, 0.0);
-    const FilterEstimate& e = filter.step(2.0, run.input.col(2), Eigen::Vector2d::Constant(std::nan("")));
-    EXPECT_TRUE(std::isnan(e.log_density) && std::isnan(e.nis)) << name_of(variant);
-    EXPECT_TRUE(e.innovation.array().isNaN().all() && e.state.allFinite());
-    filter.step(3.0, run.input.col(3), Eigen::Vector2d(run.state(0, 3), std::nan("")));
-    EXPECT_TRUE(e.nis >= 0.0 && std::isnan(e.innovation(1)));
-  }
-}
-
 TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   Bank bank = example_bank(2, 1, 3);
   bank.dt_s = 0.1;
@@ -168,30 +152,6 @@ TEST(TimeSteps, AVeryLongTimeIsANewStart) {
   EXPECT_TRUE(std::isnan(all.log_density(7)));
   EXPECT_TRUE(near(all.state.rightCols(5), fresh.state, 0.0));
   EXPECT_TRUE(near(all.log_density.tail(5), fresh.log_density, 0.0));
-}
-
-TEST(BankFilter, GoesOnFromASnapshotAsIfNothingHadHappened) {
-  Bank bank = example_bank(2, 1, 3);
-  const Trajectory run = simulate_bank(bank, 20, 14);
-  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::kf}) {
-    const Bank stepped = test::steppable(bank, variant);
-    BankFilter first(stepped, {variant}), second(stepped, {variant});
-    for (Eigen::Index k = 0; k < 10; ++k) first.step(run.time_s(k), run.input.col(k), run.state.col(k));
-    second.restore(first.snapshot());
-    for (Eigen::Index k = 10; k < 20; ++k) {
-      const FilterEstimate& a = first.step(run.time_s(k), run.input.col(k), run.state.col(k));
-      const FilterEstimate& b = second.step(run.time_s(k), run.input.col(k), run.state.col(k));
-      EXPECT_EQ(a.log_density, b.log_density);
-      EXPECT_TRUE(near(a.state, b.state, 0.0));
-    }
-  }
-  // a snapshot taken before the start
-  BankFilter fresh(bank, {}), restored(bank, {});
-  EXPECT_NO_THROW(restored.restore(fresh.snapshot()));
-  EXPECT_FALSE(restored.started());
-
-  BankFilter other(example_bank(2, 1, 2), {});
-  EXPECT_THROW(other.restore(BankFilter(bank, {}).snapshot()), std::invalid_argument);
 }
 
 TEST(BankFilter, ARefusedSnapshotChangesNothing) {

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/math/distributions/normal.hpp>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
 
@@ -68,14 +67,6 @@ TEST(TruncatedNormal, HasTheMomentsOfQuadratureHoweverNarrowAndFarOut) {
     for (const double width : {1e-7, 1e-4, 0.1, 0.24, 0.26, 1.0, 3.0, 10.0, 100.0}) expect_agreement(low, width);
 }
 
-TEST(TruncatedNormal, HasTheMassOfBoost) {
-  const boost::math::normal normal;
-  for (const double low : {0.0, 1.0, 5.0, 20.0, 35.0}) {
-    const double mass = cdf(complement(normal, low)) - cdf(complement(normal, low + 1.5));
-    EXPECT_NEAR(truncated_normal(low, low + 1.5).log_mass, std::log(mass), 1e-12 * std::max(1.0, -std::log(mass)));
-  }
-}
-
 /// The derivatives in the header's comment, compared with differences.
 TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
   const auto moments = [](const SignalLikelihood& said, double s) {
@@ -106,17 +97,6 @@ TEST(SignalLikelihood, ItsMomentsAreItsDerivatives) {
           EXPECT_NEAR((up_s[i] - down_s[i]) / (2.0 * h), by_s[i] * s, 1e-6 * scale + rounding * unit[i]) << i;
         }
       }
-}
-
-TEST(TruncatedNormal, IsMirrored) {
-  for (const double low : {-5.0, 0.3, 30.0}) {
-    const TruncatedNormal right = truncated_normal(low, low + 0.7), left = truncated_normal(-low - 0.7, -low);
-    EXPECT_EQ(right.log_mass, left.log_mass);
-    EXPECT_EQ(right.mean, -left.mean);
-    EXPECT_EQ(right.variance, left.variance);
-    EXPECT_EQ(right.third, -left.third);
-    EXPECT_EQ(right.fourth, left.fourth);
-  }
 }
 
 TEST(TruncatedNormal, OfAllNumbersIsNormalAndOfNoneThatCountIsFinite) {

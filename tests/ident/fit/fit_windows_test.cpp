@@ -52,27 +52,6 @@ TEST(FitWindows, AreTheSameBitsForAnyThreadCount) {
   }
 }
 
-TEST(FitWindows, AgreeWithFitWindow) {
-  const Recording recording = mixed_recording();
-  FitOptions options;
-  options.step = 7;
-  options.sigma = 0.06;
-  options.prior_sd = {0.7};
-  const WindowFits fits = fit_windows(recording, options);
-  const ParameterPrior prior{fits.global.theta, VectorXd::Constant(3, 0.7)};
-  const VectorXd floor = 1e-3 * fits.global.noise_variance().cwiseSqrt();
-  EXPECT_TRUE(near(fits.prior_sd, prior.sd, 0));
-  ASSERT_EQ(fits.count(), 3 * 10);  // a run has 89 transitions, so its windows start at 0, 7, ..., 63
-  for (const Index i : {0, 11, 29}) {
-    const Window window = fits.windows[static_cast<std::size_t>(i)];
-    const LocalModel one = fit_window(recording.runs[static_cast<std::size_t>(window.run)], window.start,
-                                      test::skid_structure, options, VectorXd::Constant(1, 0.06), &prior, floor);
-    EXPECT_TRUE(near(fits.at(i).theta, one.theta, window_rounding)) << "window " << i;
-    EXPECT_TRUE(near(fits.at(i).covariance, one.covariance, window_rounding)) << "window " << i;
-    EXPECT_TRUE(near(fits.at(i).noise_variance, one.noise_variance, window_rounding)) << "window " << i;
-  }
-}
-
 /// A window of three transitions has no residuals to estimate sigma from, so it has the sigma of its run.
 TEST(FitWindows, TakeSigmaFromTheWindowOrItsRun) {
   const Recording recording = mixed_recording();

@@ -267,26 +267,6 @@ TEST(AutoDiffMotionModel, GivesTheDerivativesByHand) {
   EXPECT_EQ(alone, a[0]);
 }
 
-TEST(AutoDiffMotionModel, FitsTheWindowsOfTheModelByHand) {
-  std::mt19937_64 generator(41);
-  const LinearStructure structure{1, 2, true};
-  const Recording recording = test::make_recording(
-      {test::gaussian_run(structure, Eigen::Vector4d(-0.4, -0.5, 0.6, 0.02), 0.05, 120, generator)});
-  const AutoDiffMotionModel<LinearFunctor, 1, 2, 4> model({}, "linear", named(structure.parameter_names()));
-  FitOptions options;
-  options.model = "own";
-  const WindowFits ours = fit_windows(recording, options, model);
-  const WindowFits by_hand = fit_windows(recording, options, test::LinearMotion(structure));
-  ASSERT_EQ(ours.count(), by_hand.count());
-  for (Index i = 0; i < ours.count(); ++i) {  // sums are computed in another order, so the results differ by the
-                                              // convergence tolerance
-    const LocalModel a = ours.at(i), b = by_hand.at(i);
-    const Eigen::ArrayXd standard_error = b.covariance.diagonal().array().sqrt();
-    EXPECT_LT(((a.theta - b.theta).array() / standard_error).abs().maxCoeff(), 5e-7) << i;
-    EXPECT_LT((a.covariance - b.covariance).norm(), 1e-6 * b.covariance.norm()) << i;
-  }
-}
-
 TEST(AutoDiffMotionModel, RefusesAnotherNumberOfParameters) {
   using Model = AutoDiffMotionModel<LinearFunctor, 1, 2, 4>;
   EXPECT_THROW(Model({}, "linear", named({"a", "b"})), std::invalid_argument);

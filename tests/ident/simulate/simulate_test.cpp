@@ -137,15 +137,6 @@ TEST(Simulate, NoisesHaveTheirStandardDeviations) {
   EXPECT_NEAR(sd(error), 0.05, 4 * 0.05 / std::sqrt(2 * 20000.0));
 }
 
-TEST(Simulate, NoiseFreeRunsFollowTheModel) {
-  SimulationOptions options = two_modes();
-  options.process_sd = {0.0, 0.0};
-  options.samples = 500;
-  const SimulatedRun run = simulate(options, seed).front();
-  for (const int mode : {0, 1}) EXPECT_LT(process_noise(run, options, mode).cwiseAbs().maxCoeff(), simulation_rounding);
-  EXPECT_TRUE(near(run.measured.state, run.measured.truth, 0.0));
-}
-
 TEST(Simulate, OutliersHaveTheirShareAndSize) {
   SimulationOptions options = two_modes();
   options.outlier_fraction = 0.05;

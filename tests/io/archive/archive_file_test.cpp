@@ -1,9 +1,7 @@
-#include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <ctime>
 #include <thread>
@@ -17,7 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using test::ArchiveFile;
-using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
@@ -100,38 +97,6 @@ TEST_F(ArchiveFile, NothingIsLeftWhenTheFolderIsNotWritable) {
   ASSERT_EQ(chmod(folder.path().c_str(), 0755), 0);
   EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
   EXPECT_EQ(read_file(path), before);
-}
-
-/// Limits file sizes for this process. Writes beyond the limit fail in the same way as on a full disk.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limited{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limited);
-  }
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
-
-TEST_F(ArchiveFile, AFailingWriteKeepsTheOldFileAndLeavesNothing) {
-  const std::string before = read_file(path);
-  for (const rlim_t bytes : {0, 600, 20000}) {
-    const FileSizeLimit limit(bytes);
-    EXPECT_THAT([&] { write_archive(path, test::full_archive(2, 1)); },
-                ThrowsMessage<DataError>(AllOf(HasSubstr(path.string()), HasSubstr("File too large"))));
-  }
-  EXPECT_THAT(files(), ::testing::ElementsAre("archive.h5"));
-  EXPECT_EQ(read_file(path), before);
-  EXPECT_TRUE(verify_archive(path).ok());
 }
 
 }  // namespace

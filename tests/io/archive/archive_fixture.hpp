@@ -27,7 +27,6 @@ Eigen::MatrixXd spread_pattern(Index side, Index count, double base);
 
 /// Expects that all fields of both archives have the same bits, including NaN.
 void expect_same(const Archive& actual, const Archive& expected);
-void expect_same(const Bank& actual, const Bank& expected);
 ::testing::AssertionResult same_bits(const Eigen::MatrixXd& actual, const Eigen::MatrixXd& expected);
 void expect_same(const RunEvaluation& actual, const RunEvaluation& expected);
 

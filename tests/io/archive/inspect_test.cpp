@@ -80,24 +80,6 @@ TEST_F(Inspect, AttributesKeepTheirKinds) {
   EXPECT_EQ(windows["members"]["global"]["members"]["parameters"]["shape"], json({8}));
 }
 
-TEST_F(Inspect, NamesLabelsAndOrigins) {
-  EXPECT_EQ(at("/bank")["attributes"]["mode_names"], json({"ice", "", "Gelände, \"naß\""}));
-  EXPECT_EQ(at("/data")["attributes"]["label_names"], json({"ice", "a, b"}));
-  const Archive archive = test::full_archive(2, 1);
-  const std::string run = archive.recording->runs[0].run;
-  EXPECT_EQ(at("/data/runs")["value"][0]["time_origin_ns"], 1'714'557'600'000'000'001);
-  const json labels = inspect(path, "/data/label", run)["value"];
-  ASSERT_EQ(std::ssize(labels), archive.recording->runs[0].samples());
-  EXPECT_EQ(labels[0], 0);
-  EXPECT_EQ(labels[1], -1);
-  EXPECT_EQ(labels[2], 1);
-  const json confusion = at("/evaluation/confusion");
-  EXPECT_EQ(confusion["shape"], json({4}));
-  EXPECT_EQ(confusion["value"][0]["label"], "a, b");
-  EXPECT_EQ(confusion["value"][0]["samples"], 7);
-  EXPECT_EQ(confusion["value"][3]["share"], 1.0);
-}
-
 TEST_F(Inspect, OfARunThereAreItsRows) {
   const Archive archive = test::full_archive(2, 1);
   const Trajectory& run = archive.recording->runs[1];

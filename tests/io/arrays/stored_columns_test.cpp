@@ -78,19 +78,6 @@ TEST_P(MatFiles, GiveVectorsMatricesAndNestedStructs) {
   EXPECT_EQ(store->columns()[position(*store, "log.imu.wz")].group, "log.imu");
 }
 
-TEST(MatObjects, AreNamedWithTheLineThatConvertsThem) {
-  EXPECT_EQ(matlab_conversion("timeseries", "log.speed"),
-            "s = struct('t', log.speed.Time, 'x', log.speed.Data); save log_plain s -v7");
-  EXPECT_EQ(matlab_conversion("table", "T"), "s = table2struct(T, 'ToScalar', true); save T_plain s -v7");
-  EXPECT_EQ(matlab_conversion("datetime", "d"), "s = struct('t', posixtime(d)); save d_plain s -v7");
-  EXPECT_EQ(matlab_conversion("iddata", "z"),
-            "s = struct('y', z.OutputData, 'u', z.InputData, 'Ts', z.Ts); save z_plain s -v7");
-  EXPECT_EQ(matlab_conversion("double", "x"), "");
-  EXPECT_THAT(matlab_object("iddata", "z", "log.mat"),
-              AllOf(HasSubstr("z is a MATLAB iddata"), HasSubstr("modebank.read_iddata('log.mat')")));
-  EXPECT_THAT(matlab_object("", "a.b", "log.mat"), HasSubstr("a.b is a MATLAB object"));
-}
-
 /// tests/golden/generate/mat_objects.py made these files. scipy wrote them; one has the form of MATLAB's own class
 /// system.
 TEST(MatObjects, AreNamedAsFarAsMatioDoes) {

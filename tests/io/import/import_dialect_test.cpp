@@ -2,7 +2,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <functional>
 
 #include "io/csv/csv_dialect.hpp"
 #include "tests/io/import/log_fixture.hpp"
@@ -11,10 +10,8 @@
 namespace modebank {
 namespace {
 
-using test::log_rows;
 using test::row;
 using test::seconds;
-using test::stamp_ns;
 using test::table;
 using test::u_of;
 using test::x_of;
@@ -61,40 +58,6 @@ TEST_F(ImportDialect, DecimalCommas) {
   EXPECT_THAT(notes(content), Contains(AllOf(HasSubstr("semicolons"), HasSubstr("decimal commas"))));
   options.format.decimal = DecimalMark::point;
   EXPECT_THAT(error<DataError>(), HasSubstr(":2: column time: \"0,000000\" is not a time")) << "the option is believed";
-}
-
-TEST_F(ImportDialect, MarksOfThousands) {
-  options.time = {"t"};
-  const auto written = [&](const std::string& head, const std::function<std::string(int)>& text) {
-    const Trajectory run = read(table(head, text)).recording.runs.at(0);
-    for (int k = 0; k < log_rows; ++k) {
-      EXPECT_EQ(run.state(0, k), 2400 + 7 * k) << k;
-      EXPECT_EQ(run.input(0, k), 40 + 0.25 * k) << k;
-      EXPECT_EQ(run.time_s(k), 0.5 * k) << k;
-    }
-  };
-  const auto comma = [](double value) { return with_commas(fmt::format("{:.2f}", value)); };
-  written("t;x;u\n", [&](int k) {
-    return fmt::format("{};2.{};{}", with_commas(fmt::format("{:.1f}", 0.5 * k)), 400 + 7 * k, comma(40 + 0.25 * k));
-  });
-  written("t;x;u\n", [&](int k) {
-    return fmt::format("{};2.{},00;{}", with_commas(fmt::format("{:.1f}", 0.5 * k)), 400 + 7 * k, comma(40 + 0.25 * k));
-  });
-  written("t,x,u\n", [&](int k) {
-    return fmt::format("\"{}\",\"2.{},0\",\"{}\"", comma(0.5 * k), 400 + 7 * k, comma(40 + 0.25 * k));
-  });
-  written("t,x,u\n",
-          [&](int k) { return fmt::format("{},\"2,{}.00\",\"{:.2f}\"", 0.5 * k, 400 + 7 * k, 40 + 0.25 * k); });
-  options.format.decimal = DecimalMark::comma;
-  written("t;x;u\n",
-          [&](int k) { return fmt::format("{};2.{};{}", comma(0.5 * k), 400 + 7 * k, comma(40 + 0.25 * k)); });
-  write("log.csv", "t;x;u\n0,0;1,5;1\n0,5;2.49;1\n");
-  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:3: column x: \"2.49\" is not a number with a decimal comma"));
-  write("log.csv", "t;x;u\n0,0;1,5;1\n0.5;2,49;1\n");
-  EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:3: column t: \"0.5\" is"));
-  options.format.decimal = DecimalMark::automatic;
-  write("log.csv", "t,x,u\n0.1,1.5,1\n0.2,\"2,499\",1\n");
-  EXPECT_THAT(error<DataError>(), HasSubstr("\"2,499\" is ambiguous (thousands or a decimal comma)"));
 }
 
 TEST_F(ImportDialect, WordsForMissingValuesAreCounted) {
@@ -181,53 +144,6 @@ TEST_F(ImportDialect, TheTableIsFoundBehindItsTitle) {
     EXPECT_EQ(lines(none), 0U) << none;
 }
 
-TEST_F(ImportDialect, RowsOfSeparatorsBelowTheTableAreNone) {
-  for (const char* separator : {"\t", ";", ","}) {
-    const auto joined = [&](const std::string& a, const std::string& b, const std::string& c) {
-      return a + separator + b + separator + c;
-    };
-    const std::string content = table(joined("time", "x", "u") + "\n", [&](int k) {
-      return joined(seconds(k), fmt::to_string(x_of(k)), fmt::to_string(u_of(k)));
-    });
-    std::string tail;
-    for (int k = 0; k < 40; ++k) tail += joined("", " ", "") + "\r\n";
-    expect_plain(content + tail);
-    expect_plain(content + tail + "\n");
-  }
-  options.missing = Missing::predict;
-  const ImportedData data = read("time,x,u\n0,1,2\n1,2,\n2,3,\n");
-  EXPECT_EQ(data.recording.runs[0].samples(), 3) << "a last value that is missing is one";
-}
-
-TEST_F(ImportDialect, OtherBytesThanUtf8AreWindows1252) {
-  options.state = {
-      "gr\xC3\xB6\xC3\x9F"
-      "e"};
-  const auto rows = [](int k) { return fmt::format("{},{},{},ok", seconds(k), x_of(k), u_of(k)); };
-  const std::string latin = table(
-                        "time,gr\xF6\xDF"
-                        "e,u,note\n",
-                        rows),
-                    utf8 = table(
-                        "time,gr\xC3\xB6\xC3\x9F"
-                        "e,u,note\n",
-                        rows);
-  expect_plain(latin);
-  EXPECT_THAT(notes(latin), Contains(HasSubstr("not UTF-8 are read as Windows-1252")));
-  expect_plain(utf8);
-  EXPECT_THAT(notes(utf8), IsEmpty());
-  write("log.csv", utf8 + "0.8,1,2,\xB0\n");
-  EXPECT_EQ(import().recording.runs.at(0).samples(), log_rows + 1) << "one such line leaves the others as they are";
-}
-
-TEST_F(ImportDialect, TruthValuesAreNumbers) {
-  options.input = {"brake"};
-  const ImportedData data = read(table("time,x,brake\n", [](int k) {
-    return fmt::format("{},{},{}", seconds(k), x_of(k), k % 3 == 0 ? "True" : "False");
-  }));
-  for (int k = 0; k < log_rows; ++k) EXPECT_EQ(data.recording.runs[0].input(0, k), k % 3 == 0 ? 1.0 : 0.0);
-}
-
 TEST_F(ImportDialect, UnitsRowAndComments) {
   const std::string content = table("# logger v2, robot A\n#\ntime,x,u\ns,[rad/s],m/s\n", [](int k) {
     return std::string(k == 20 ? "# \"restarted\n" : "") + fmt::format("{},{},{}", seconds(k), x_of(k), u_of(k));
@@ -269,41 +185,12 @@ TEST_F(ImportDialect, RowsWithoutTimes) {
   EXPECT_EQ(data.recording.runs[0].state, row({1, 3, 5}));
 }
 
-TEST_F(ImportDialect, UnitsStandInBracketsOfTheHeader) {
-  write("log.csv", table("t [ms],x [deg/s],u (m/s)\n", [&](int k) {
-          return fmt::format("{:.6f},{},{}", static_cast<double>(stamp_ns(k)) / 1e6, x_of(k), u_of(k));
-        }));
-  options.time = {"t [ms]"};
-  options.state = {"x [deg/s]"};
-  options.input = {"u (m/s)"};
-  const ImportedData data = import();
-  EXPECT_EQ(data.recording.states.front().unit, "deg/s");
-  EXPECT_EQ(data.recording.inputs.front().unit, "m/s");
-  EXPECT_NEAR(data.recording.runs.front().time_s(log_rows - 1), static_cast<double>(stamp_ns(log_rows - 1)) / 1e9,
-              1e-9);
-}
-
 TEST_F(ImportDialect, BytesOfNoFormatAndAWrongSeparatorAreNamed) {
   write("log.csv", std::string("\x01\x02\0\x04 time", 9));
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("nor a known format; it begins with the bytes 01 02 00 04"));
   write("log.csv", plain());
   options.format.separator = Separator::semicolon;
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("columns: time,x,u (a single one; set data.separator"));
-}
-
-TEST_F(ImportDialect, OctavesTextIsNamed) {
-  const std::string head = "# Created by Octave 7.3.0, Tue Nov 25 10:00:00 2025 UTC <a@b>\n";
-  const std::string one = "# name: x\n# type: matrix\n# rows: 3\n# columns: 3\n 0 1 2\n 1 2 3\n 2 3 5\n\n\n";
-  write("log.csv", head + one + one);
-  EXPECT_THAT(error<ConfigurationError>(),
-              AllOf(HasSubstr("log.csv is in Octave's text format"), HasSubstr("save('-v7'")));
-  options.time = {"c1"};
-  options.state = {"c2"};
-  options.input = {"c3"};
-  EXPECT_EQ(read(head + one).recording.runs[0].state, row({1, 2, 3})) << "one matrix is a text of numbers";
-  options.inputs = "log.mat";
-  write("log.mat", head + one);
-  EXPECT_THAT(error<ConfigurationError>(), HasSubstr("log.mat is in Octave's text format"));
 }
 
 TEST_F(ImportDialect, FormatsThatAreKnownButNotRead) {

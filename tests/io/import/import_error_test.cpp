@@ -31,57 +31,11 @@ TEST_F(ImportError, MissingColumnOfTwoFiles) {
   EXPECT_THAT(error<ConfigurationError>(), HasSubstr("no column \"stamp\""));
 }
 
-TEST_F(ImportError, TimeMustBeInBothFilesWhenJoiningOnTime) {
-  write("imu_1.csv", "Time,x\n0,1\n1,2\n");
-  EXPECT_THAT(error<ConfigurationError>(), AllOf(HasSubstr("imu_1.csv has no column \"time\", did you mean Time?")));
-}
-
-TEST_F(ImportError, RepeatedColumn) {
-  write("imu_1.csv", "time,x,x\n0,1,1\n1,2,2\n");
-  EXPECT_EQ(error<ConfigurationError>(), path("imu_1.csv") + " has column \"x\" twice");
-}
-
-TEST_F(ImportError, EmptyFile) {
-  for (const char* content : {"", "\n \n"}) {
-    write("imu_1.csv", content);
-    EXPECT_EQ(error<ConfigurationError>(), path("imu_1.csv") + " is empty, so it has no header");
-  }
-}
-
-TEST_F(ImportError, HeaderOnly) {
-  write("imu_1.csv", "time,x\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ": there is a header, but no rows");
-}
-
-TEST_F(ImportError, NoMatchingFile) {
-  options.inputs = "run_*.csv";
-  EXPECT_EQ(error<ConfigurationError>(), "data.inputs: no file matches " + path("run_*.csv"));
-  options.inputs = "absent/run_*.csv";
-  EXPECT_EQ(error<ConfigurationError>(),
-            "data.inputs: no file matches " + path("absent/run_*.csv") + ": " + path("absent") + " does not exist");
-}
-
-TEST_F(ImportError, MissingStatesFile) {
-  write("pro_2.csv", "time,u\n0,1\n1,2\n");
-  EXPECT_THAT(error<ConfigurationError>(), AllOf(HasSubstr(path("pro_2.csv")), HasSubstr(path("imu_2.csv"))));
-}
-
 TEST_F(ImportError, UnreadableFile) {
   std::filesystem::create_directory(folder.path() / "pro_2.csv");
   write("imu_2.csv", "time,x\n0,1\n1,2\n");
   EXPECT_EQ(error<ConfigurationError>(),
             path("pro_2.csv") + ": the folder has neither metadata.yaml nor .bag, .mcap or .db3 files");
-}
-
-TEST_F(ImportError, TextMissingValueAndWidth) {
-  write("imu_1.csv", "time,x\n0,1\n1,fast\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":3: column x: \"fast\" is not a number");
-  write("imu_1.csv", "time,x\n0,1\n1,NaN\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":3: column x: missing value (\"NaN\")");
-  write("imu_1.csv", "time,x\n0,1\n,2\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":3: column time: missing value");
-  write("imu_1.csv", "time,x\n0,1\n1,2,3\n");
-  EXPECT_EQ(error<DataError>(), path("imu_1.csv") + ":3: 3 fields, but the header has 2");
 }
 
 TEST_F(ImportError, TimeBackwardsOrRepeated) {

@@ -64,21 +64,6 @@ TEST_F(ImportLag, AutoFindsAndUndoesIt) {
   }
 }
 
-TEST_F(ImportLag, AConstantLagUndoesItToo) {
-  write_runs(0.4);
-  options.lag_s = 0.4;
-  const Trajectory shifted = import().recording.runs[0];
-  write_runs(0.0);
-  options.lag_s = 0.0;
-  const Trajectory truth = import().recording.runs[0];
-  ASSERT_GT(shifted.samples(), 590);
-  for (Index k = 0; k < shifted.samples(); ++k) {
-    const Index j = static_cast<Index>(std::lround(shifted.time_s(k) * 10.0));
-    ASSERT_NEAR(truth.time_s(j), shifted.time_s(k), 1e-9);
-    EXPECT_EQ(shifted.input(0, k), truth.input(0, j));
-  }
-}
-
 TEST_F(ImportLag, ResamplingAndGapsKeepIt) {
   write_runs(0.4);
   options.lag_auto = true;
@@ -116,9 +101,6 @@ TEST_F(ImportLag, WithinOneFileToo) {
 TEST_F(ImportLag, NeedsInputsAndTrainingRuns) {
   write_runs(0.4, 2, 20);
   options.lag_auto = true;
-  options.lag_range_s = 0.0;
-  EXPECT_THAT(error<ConfigurationError>(), ::testing::HasSubstr("data.lag_range_s"));
-  options.lag_range_s = 2.5;
   options.input.clear();
   EXPECT_THAT(error<ConfigurationError>(), ::testing::HasSubstr("data.lag_s = auto needs inputs"));
 }

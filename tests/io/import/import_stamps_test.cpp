@@ -282,19 +282,6 @@ TEST_F(StampsOfALog, NanosecondsOfAnEpochAreExact) {
   EXPECT_THAT(notes(content), Contains(HasSubstr("column time counts nanoseconds")));
 }
 
-TEST_F(StampsOfALog, MillisecondsAndMicrosecondsOfAnEpoch) {
-  expect_plain(test::table("time,x,u\n",
-                           [](int k) {
-                             return fmt::format("{}.{:03},{},{}", (epoch_ns + stamp_ns(k)) / 1'000'000,
-                                                stamp_ns(k) / 1000 % 1000, x_of(k), u_of(k));
-                           }),
-               epoch_ns);
-  expect_plain(
-      test::table("time,x,u\n",
-                  [](int k) { return fmt::format("{},{},{}", (epoch_ns + stamp_ns(k)) / 1000, x_of(k), u_of(k)); }),
-      epoch_ns);
-}
-
 TEST_F(StampsOfALog, SecondsOfAnEpochKeepTheirLastDigit) {
   expect_plain(test::table("time,x,u\n",
                            [](int k) {
@@ -343,17 +330,6 @@ TEST_F(StampsOfALog, IsoTimes) {
                  epoch_ns + shift_h);
 }
 
-TEST_F(StampsOfALog, SecondsAndNanosecondsInTwoColumns) {
-  options.time = {"secs", "nsecs"};
-  expect_plain(test::table("nsecs,secs,x,u\n",
-                           [](int k) {
-                             const std::int64_t stamp = epoch_ns + stamp_ns(k);
-                             return fmt::format("{},{},{},{}", stamp % 1'000'000'000, stamp / 1'000'000'000, x_of(k),
-                                                u_of(k));
-                           }),
-               epoch_ns);
-}
-
 TEST_F(StampsOfALog, AStampFarOutIsNamed) {
   for (const int out : {1, 17, log_rows - 1}) {
     write("log.csv", test::table("time,x,u\n", [&](int k) {
@@ -366,15 +342,6 @@ TEST_F(StampsOfALog, AStampFarOutIsNamed) {
           return fmt::format("{},{},{}", (k < 22 ? 0 : epoch_ns) + stamp_ns(k), x_of(k), u_of(k));
         }));
   EXPECT_THAT(error<DataError>(), HasSubstr("log.csv:24: column time")) << "a clock that was set on the way";
-}
-
-TEST_F(StampsOfALog, DisorderIsExplained) {
-  write("log.csv", test::table("stamp.secs,x,u\n", [&](int k) { return fmt::format("{},{},{}", 100 + k / 10, 1, 2); }));
-  options.time = {"stamp.secs"};
-  EXPECT_THAT(error<DataError>(), HasSubstr("data.time = stamp.secs, stamp.nsecs"));
-  write("log.csv", test::table("time,x,u\n", [&](int k) { return fmt::format("{},{},{}", 0.1 * (k % 9), 1, 2); }));
-  options.time = {"time"};  // stretches of nine rows are too short for runs
-  EXPECT_THAT(error<DataError>(), AllOf(HasSubstr("log.csv:11:"), HasSubstr("name their column in data.run")));
 }
 
 TEST(StampPattern, ReadsWhatStrptimeReads) {

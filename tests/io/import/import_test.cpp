@@ -1,7 +1,5 @@
 #include "io/import/import.hpp"
 
-#include <tbb/global_control.h>
-
 #include "io/files/sha256.hpp"
 #include "tests/io/import/import_fixture.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -58,13 +56,6 @@ TEST_F(Import, ReadsStatesAndInputsOfOneFile) {
   EXPECT_EQ(run.state, (Eigen::MatrixXd(2, 2) << 2, 5, 1, 4).finished());
   EXPECT_EQ(run.truth, (Eigen::MatrixXd(2, 2) << -2, -5, -1, -4).finished());
   EXPECT_EQ(run.input, row({3, 6}));
-}
-
-TEST_F(Import, ReadsOneFileWithoutStar) {
-  write_run("drive.1");
-  options.inputs = "pro_drive.1.csv";
-  options.states = "imu_drive.1.csv";
-  EXPECT_THAT(names(import()), ElementsAre("pro_drive.1"));
 }
 
 TEST_F(Import, LooksTruthUpInStatesThenInputs) {
@@ -208,15 +199,6 @@ TEST_F(Import, ListsFilesWithTheirHashes) {
   EXPECT_EQ(data.files[1].bytes, imu_a.size());
   EXPECT_EQ(data.files[1].sha256, sha256_hex(imu_a));
   EXPECT_EQ(data.data_hash, sha256_hex(sha256_hex(pro) + sha256_hex(imu_a) + sha256_hex(pro) + sha256_hex(imu_b)));
-}
-
-TEST_F(Import, DoesNotDependOnThreads) {
-  for (int i = 0; i < 30; ++i) write_run(std::to_string(i));
-  const ImportedData parallel = import();
-  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const ImportedData serial = import();
-  EXPECT_EQ(parallel.data_hash, serial.data_hash);
-  EXPECT_EQ(names(parallel), names(serial));
 }
 
 // The two-file layout of the recordings of Salvi et al. (2025). The rows of both files correspond. The filtered gyro

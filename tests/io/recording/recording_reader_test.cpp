@@ -47,15 +47,6 @@ TEST(RecordingReader, ATopicIsATableWithStamps) {
   EXPECT_EQ(read[1].time_ns.front(), 1432235498039331631);
 }
 
-TEST(RecordingReader, StatesAndInputsOfTwoTopicsAreJoined) {
-  MODEBANK_NEEDS_SHARED_DATA();
-  const ImportedData data = import_data(husky_options());
-  ASSERT_EQ(data.recording.runs.size(), 1u);
-  // If both topics exist, the samples are those of the odometry.
-  EXPECT_GT(data.recording.runs.front().time_s.size(), 3900);
-  EXPECT_LE(data.recording.runs.front().time_s.size(), 3952);
-}
-
 TEST(RecordingReader, WhyAColumnIsMissingIsSaid) {
   MODEBANK_NEEDS_SHARED_DATA();
   DataOptions options = husky_options();

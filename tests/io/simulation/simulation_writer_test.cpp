@@ -82,14 +82,6 @@ TEST_F(SimulationWriter, KeepsAllSamplesAtOtherRates) {
   EXPECT_EQ(import().recording.runs[0].samples(), 200);
 }
 
-TEST_F(SimulationWriter, WritesTheTwoFilesOfEveryRun) {
-  write_simulation({make_run(3, 0), make_run(3, 1)}, layout);
-  EXPECT_THAT(files(), ElementsAre("imu_00.csv", "imu_01.csv", "pro_00.csv", "pro_01.csv")) << "and no temporary ones";
-  EXPECT_THAT(read_csv_head(layout.folder / "pro_00.csv", {}).names,
-              ElementsAre("time", "velL", "velR", "true_wz", "true_vx", "mode"));
-  EXPECT_THAT(read_csv_head(layout.folder / "imu_00.csv", {}).names, ElementsAre("time", "wz", "vx"));
-}
-
 TEST_F(SimulationWriter, WritesModesAndExtendsTheStates) {
   const SimulatedRun run = make_run(20, 0);
   write_simulation({run}, layout);
@@ -99,25 +91,6 @@ TEST_F(SimulationWriter, WritesModesAndExtendsTheStates) {
   const Table imu = parse_csv("imu", read_file(layout.folder / "imu_00.csv"), {0, {"time", "wz"}});
   EXPECT_GE(imu.numbers[0].back(), run.measured.time_s(19) + 1.0 / 65.0 - 1e-9);
   EXPECT_EQ(imu.numbers[1].back(), run.measured.state(0, 19)) << "held after the last sample";
-}
-
-TEST_F(SimulationWriter, ReplacesFilesAndQuotesNames) {
-  layout.states = {"w,z", "v\"x"};
-  write_simulation({make_run(30, 0)}, layout);
-  write_simulation({make_run(3, 1)}, layout);
-  options.state = layout.states;
-  options.truth.clear();
-  EXPECT_EQ(import().recording.runs[0].samples(), 3);
-}
-
-TEST_F(SimulationWriter, ManyRunsKeepTheirOrder) {
-  std::vector<SimulatedRun> runs;
-  for (std::uint64_t i = 0; i < 101; ++i) runs.push_back(make_run(2, i));
-  write_simulation(runs, layout);
-  const Recording recording = import().recording;
-  ASSERT_EQ(recording.runs.size(), 101);
-  EXPECT_EQ(recording.runs[100].run, "100");
-  EXPECT_EQ(recording.runs[9].run, "009");
 }
 
 TEST_F(SimulationWriter, FolderThatCannotBeMade) {
@@ -142,16 +115,6 @@ TEST_F(SimulationWriter, AllFilesOrNone) {
               HasSubstr("pro_01.csv"));
   EXPECT_THAT(files(), ElementsAre("imu_00.csv", "pro_00.csv", "pro_01.csv"));
   EXPECT_EQ(read_file(layout.folder / "imu_00.csv"), before);
-}
-
-TEST_F(SimulationWriter, FailureHalfwayLeavesNothing) {
-  const SimulationTable table{{"time"}, Eigen::MatrixXd::Zero(1, 2)};
-  const auto fails_at_the_third = [&](std::size_t i) {
-    if (i == 2) throw std::runtime_error("out of luck");
-    return SimulationTables{table, table};
-  };
-  EXPECT_THROW(write_simulation_files(layout.folder, 4, fails_at_the_third), std::runtime_error);
-  EXPECT_FALSE(std::filesystem::exists(layout.folder));
 }
 
 TEST_F(SimulationWriter, RefusesToMixWithOtherRuns) {

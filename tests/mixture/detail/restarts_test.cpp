@@ -35,14 +35,6 @@ GaussianMixture with_error(Index divided, Index first, Index second) {
   return mixture;
 }
 
-TEST(Cross, SameMixturesGiveThemselves) {
-  const GaussianMixture one = four_in_a_row(), result = cross(one, one);
-  ASSERT_EQ(result.components(), 4);
-  EXPECT_LT((result.weights - one.weights).norm(), 1e-14);
-  EXPECT_LT((result.means - one.means).norm(), 1e-12);
-  for (std::size_t k = 0; k < 4; ++k) EXPECT_LT((result.covariances[k] - one.covariances[k]).norm(), 1e-12);
-}
-
 /// One mixture is wrong at one end of the row of clusters, the other mixture at the other end. Their child must be
 /// right at both ends.
 TEST(Cross, TakesWhatIsRightInEither) {

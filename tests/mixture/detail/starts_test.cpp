@@ -3,16 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 
-#include "mixture/assignment.hpp"
 #include "mixture/detail/cloud.hpp"
-#include "mixture/detail/split_merge.hpp"
 #include "tests/mixture/mixture_test_support.hpp"
-#include "tests/support/matrix_compare.hpp"
 
 namespace modebank::test {
 namespace {
@@ -92,64 +87,6 @@ TEST(SplitAndMerge, LeavesAPoorOptimum) {
   EXPECT_NEAR(sweep.fit(6, 1, &start).log_likelihood, truth, 1e-3);
   options.split_merge = 0;
   EXPECT_NEAR(EmSweep(points, options).fit(6, 1, &start).log_likelihood, stuck, 1e-3);
-}
-
-TEST(SplitAndMerge, TheExpectedBestMoveIsTheRightOne) {
-  const Eigen::MatrixXd points = draw(six_clusters(), 600, 4);
-  const GaussianMixture stuck = fit_em(points, poor_start(), EmOptions{}).mixture;
-  const std::vector<SplitMergeMove> moves = split_merge_moves(stuck, points, EmOptions{}, 3);
-  ASSERT_FALSE(moves.empty());
-  EXPECT_GT(moves[0].gain, 0.0);
-  EXPECT_NEAR((stuck.means.col(moves[0].merged) - stuck.means.col(moves[0].absorbed)).norm(), 0.0, 2.0);
-  const GaussianMixture after = apply(moves[0], stuck);
-  EXPECT_NEAR(after.weights.sum(), 1.0, 1e-12);
-  EXPECT_GT(log_density(after, points).sum(), log_density(stuck, points).sum());
-}
-
-/// Only `most` of the K^3 / 2 moves may be stored. With 500 components, all moves would not fit into memory.
-TEST(SplitAndMerge, TheFewBestMovesAreTheBestOfAll) {
-  std::mt19937_64 generator(7);
-  std::normal_distribution<double> normal;
-  const Eigen::MatrixXd points = Eigen::MatrixXd::NullaryExpr(2, 300, [&] { return normal(generator); });
-  GaussianMixture mixture;
-  mixture.weights = Eigen::VectorXd::Constant(6, 1.0 / 6.0);
-  mixture.means = points.leftCols(6);
-  mixture.covariances.assign(6, 0.3 * Eigen::MatrixXd::Identity(2, 2));
-  const std::vector<SplitMergeMove> all = split_merge_moves(mixture, points, EmOptions{}, 1000);
-  ASSERT_GE(all.size(), 30u) << "10 merges of the other five for every component that can be split";
-  for (std::size_t most : {std::size_t{1}, std::size_t{5}, std::size_t{20}}) {
-    const std::vector<SplitMergeMove> few = split_merge_moves(mixture, points, EmOptions{}, most);
-    ASSERT_EQ(few.size(), most);
-    for (std::size_t i = 0; i < most; ++i) {
-      EXPECT_EQ(few[i].gain, all[i].gain);
-      EXPECT_EQ(few[i].split, all[i].split);
-      EXPECT_EQ(few[i].merged, all[i].merged);
-      EXPECT_EQ(few[i].absorbed, all[i].absorbed);
-    }
-  }
-}
-
-TEST(Assignment, AgreesWithAllPermutations) {
-  std::mt19937_64 generator(1);
-  for (Index size = 1; size <= 6; ++size)
-    for (int trial = 0; trial < 20; ++trial) {
-      const Eigen::MatrixXd values = Eigen::MatrixXd::NullaryExpr(
-          size, size, [&]() { return static_cast<double>(generator() % 1000) / 100.0 - 5.0; });
-      std::vector<Index> order(static_cast<std::size_t>(size));
-      std::iota(order.begin(), order.end(), Index{0});
-      const auto total = [&](const std::vector<Index>& columns) {
-        double sum = 0.0;
-        for (Index i = 0; i < size; ++i) sum += values(i, columns[static_cast<std::size_t>(i)]);
-        return sum;
-      };
-      double best = -1e300;
-      do best = std::max(best, total(order));
-      while (std::next_permutation(order.begin(), order.end()));
-      std::vector<Index> found = best_assignment(values);
-      EXPECT_NEAR(total(found), best, 1e-9);
-      std::sort(found.begin(), found.end());
-      EXPECT_TRUE(std::is_permutation(found.begin(), found.end(), order.begin()));
-    }
 }
 
 }  // namespace

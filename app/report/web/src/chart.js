@@ -1,20 +1,16 @@
-// A figure of panels with axes as SVG: points, lines, bars, cells. CSS sets the colours, so a change of theme needs no
+// A figure of panels with axes as SVG: points, lines, bars. CSS sets the colours, so a change of theme needs no
 // new drawing. chart_layout.js places the parts and chart_marks.js draws them.
 import {layoutOf} from './chart_layout.js';
 import {drawChart} from './chart_panel.js';
-import {readPoints} from './chart_tip.js';
 import {h, legend} from './elements.js';
-import {drawWhenIdle} from './page.js';
 import {inTurn, whenNear} from './turns.js';
 
 /**
- * x and y have equal length; null or NaN leaves a gap. `tip(i)`: the tip of point i; `pick(i)`: called after a click on
- * it. 'points': symbols; 'line': through the points; 'bars': from zero to y at x; 'cells': a grid with `colours[i][j]`
- * at y[i] and x[j]; 'band': grey between two heights; 'rule': a horizontal line at y or a vertical one at x.
+ * x and y have equal length; null or NaN leaves a gap. 'points': symbols; 'line': through the points; 'bars': from zero
+ * to y at x; 'band': grey between two heights; 'rule': a horizontal line at y or a vertical one at x.
  * @typedef {{kind: string, x?: any, y?: any, colour?: string, size?: number,
  *   symbol?: string, opacity?: number, edge?: boolean, width?: number, dash?: string, step?: boolean,
- *   name?: string, low?: number, high?: number, colours?: string[][], tip?: (i: number) => string|string[],
- *   pick?: (i: number) => void, which?: any}} Mark
+ *   name?: string, low?: number, high?: number}} Mark
  * `levels`: names at 0, 1, 2, ...; `whole`: ticks at whole numbers; `zero`: from zero on.
  * @typedef {{title?: string, range?: number[]|null, levels?: string[], whole?: boolean, zero?: boolean}} Axis
  * @typedef {{title?: string, x: Axis, y: Axis, marks: Mark[]}} Panel
@@ -50,10 +46,8 @@ export function figure(label, make, caption) {
   const show = () => {
     const width = plot.clientWidth;
     if (!plot.drawing || !width) return;
-    const layout = layoutOf(plot.drawing, width), svg = drawChart(layout);
-    plot.layout = layout;
-    plot.replaceChildren(svg);
-    readPoints(svg, layout);
+    plot.layout = layoutOf(plot.drawing, width);
+    plot.replaceChildren(drawChart(plot.layout));
     plot.dataset.drawn = 'true';
   };
   element.plot = plot;
@@ -77,10 +71,6 @@ export function figure(label, make, caption) {
     plot.style.minHeight = '200px';
     const ignore = whenNear(plot, () => element.begin());
   });
-  drawWhenIdle(() => {
-    element.begin();
-    return element.ready;
-  }, plot);
   const fit = oncePerFrame(show);
   new ResizeObserver(() => {
     if (plot.layout && plot.layout.width !== plot.clientWidth) fit();

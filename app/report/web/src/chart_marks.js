@@ -50,7 +50,9 @@ function points(mark, to) {
   return s('path', {
     d: list.join(''),
     fill: dot ? 'none' : colour,
-    stroke: dot ? colour : edge ? 'var(--ink)' : 'none',
+    stroke: dot ? colour :
+        edge    ? 'var(--ink)' :
+                  'none',
     'stroke-width': dot ? size : 1.2,
     'stroke-linecap': 'round',
     opacity,
@@ -80,17 +82,6 @@ function bars({x, y, width, colour, opacity}, to) {
   return s('path', {d: list.join(''), fill: shade(colour), opacity});
 }
 
-function cells({x, y, colours, opacity}, to) {
-  const half = (list) => (list.length > 1 ? (list[1] - list[0]) / 2 : 0.5), w = half(x), up = half(y);
-  const paths = new Map();
-  colours.forEach((row, i) => row.forEach((colour, j) => {
-    const left = short(to.x(x[j] - w)), right = short(to.x(x[j] + w));
-    const path = `M${left} ${short(to.y(y[i] - up))}V${short(to.y(y[i] + up))}H${right}V${short(to.y(y[i] - up))}Z`;
-    paths.set(colour, (paths.get(colour) || '') + path);
-  }));
-  return [...paths].map(([colour, d]) => s('path', {d, fill: shade(colour), opacity}));
-}
-
 const band = ({low, high}, to, at) =>
     s('rect', {class: 'band', x: at.x, width: at.width, y: to.y(high), height: Math.max(0, to.y(low) - to.y(high))});
 
@@ -103,7 +94,6 @@ const kinds = {
   points,
   line,
   bars,
-  cells,
   band,
   rule,
 };

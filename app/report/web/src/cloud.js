@@ -1,4 +1,4 @@
-// Local models as a cloud of points: the figure, its legend, its controls, and the choice of a window.
+// Local models as a cloud of points: the figure, its legend and its controls.
 import {cloudFigure, groupColour} from './cloud_figures.js';
 import {check, choice, choiceIfAny, controls, h, swatch} from './elements.js';
 import {array} from './page_data.js';
@@ -7,10 +7,8 @@ import {WindowCloud} from './window_cloud.js';
 
 async function loadWindows(windows) {
   const all = (places) => Promise.all(places.map(array));
-  const [run, begin, end, label, mode] =
-      await all([windows.run, windows.begin, windows.end, windows.label, windows.mode]);
-  const covariance = windows.covariance ? await all(windows.covariance) : null;
-  return {run, begin, end, label, mode, covariance, values: await all(windows.values)};
+  const [label, mode] = await all([windows.label, windows.mode]);
+  return {label, mode, values: await all(windows.values)};
 }
 
 // The groups of windows with their colours. Each group has a button that shows or hides it.
@@ -61,21 +59,12 @@ function makeControls(cloud, redraw, fillLegend) {
       windows.bank ? check('Modes of the bank', true, set('showBank')) : null);
 }
 
-// `windows`: made by windows_section in C++. `runs`: names of the runs. `goTo(run, begin, end)`: shows this part of the
-// data. Returns the elements from top to bottom.
-export async function drawCloud(windows, runs, goTo) {
-  const cloud = new WindowCloud(windows, await loadWindows(windows), runs);
-  const info =
-      h('p', {class: 'note', id: 'window-info', 'aria-live': 'polite'},
-        'Point at a window to read it; click it to see its stretch of the data.');
-  const flat = cloudFigure(cloud, (i) => {
-    cloud.picked = i;
-    info.textContent = cloud.described(i);
-    redraw();
-    goTo(cloud.run[i], cloud.begin[i], cloud.end[i]);
-  });
+// `windows`: made by windows_section in C++. Returns the elements from top to bottom.
+export async function drawCloud(windows) {
+  const cloud = new WindowCloud(windows, await loadWindows(windows));
+  const flat = cloudFigure(cloud);
   if (!flat) return [];
   const redraw = () => flat.update();
   const legend = makeLegend(cloud, redraw);
-  return [makeControls(cloud, redraw, legend.fill), legend.list, info, flat];
+  return [makeControls(cloud, redraw, legend.fill), legend.list, flat];
 }

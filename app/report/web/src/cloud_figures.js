@@ -1,11 +1,9 @@
 // The figure of a WindowCloud. It has one panel for each pair of chosen parameters.
 import {figure} from './chart.js';
 import {ellipseLine} from './ellipse.js';
-import {componentColour, INK, modeColour, palette} from './look.js';
-import {modeTitle} from './mode_names.js';
+import {componentColour, modeColour, palette} from './look.js';
 import {usualRange} from './statistics.js';
 import {titleOf} from './time_rows.js';
-import {digits} from './window_cloud.js';
 
 const many = 20000;  // from this number of windows on, points are small and faint
 
@@ -15,19 +13,13 @@ export const groupColour = (cloud, key) => (key < 0 ? palette.unclustered : colo
 
 const rangeOf = (cloud, a) => (cloud.showAll ? null : usualRange(cloud.values[a]));
 
-// The tip of a window: its run, its time, and its values on the visible axes.
-const told =
-    (cloud,
-     i) => [cloud.place(i), ...cloud.axes.map((a) => `${cloud.windows.axes[a].name} = ${digits(cloud.values[a][i])}`)];
-
-function windowPoints(cloud, [a, b], pick) {
+function windowPoints(cloud, [a, b]) {
   const crowded = cloud.count > many;
   return cloud.shownGroups([a, b]).map(({key, list}) => {
     const at = (axis) => Float32Array.from(list, (i) => cloud.values[axis][i]);
     return {
       kind: 'points',
       name: cloud.groupName(key),
-      which: list,
       x: at(a),
       y: at(b),
       colour: groupColour(cloud, key),
@@ -35,8 +27,6 @@ function windowPoints(cloud, [a, b], pick) {
       opacity: key < 0 ? 0.3 :
           crowded      ? 0.4 :
                          0.65,
-      tip: (i) => told(cloud, list[i]),
-      pick: (i) => pick(list[i]),
     };
   });
 }
@@ -52,7 +42,6 @@ function bankPoints(cloud, [a, b]) {
                     symbol: 'diamond',
                     size: 11,
                     edge: true,
-                    tip: () => `${modeTitle(k)} of the bank`,
                   }));
 }
 
@@ -62,36 +51,32 @@ function pairsOf(axes) {
   return [[0, 1], [0, 2], [1, 2]].map(([a, b]) => [axes[a], axes[b]]);
 }
 
-// Ellipses of the groups and of the chosen window.
+// Ellipses of the groups.
 function ellipses(cloud, pair) {
   const {limit2} = cloud.windows;
   const outline = (mean, covariance, look) => {
     const closed = ellipseLine(mean, covariance, limit2);
     return closed ? [{kind: 'line', ...closed, width: 2, ...look}] : [];
   };
-  const groups =
-      cloud.ellipses(pair).flatMap(({k, mean, covariance}) => outline(mean, covariance, {colour: colourIn(cloud, k)}));
-  const {picked} = cloud;
-  if (picked < 0 || !cloud.covariance || !cloud.parametersOnly(pair)) return groups;
-  const own = outline(cloud.point(picked, pair), cloud.errorMatrix(picked, pair), {colour: INK, dash: 'dot'});
-  return [...groups, ...own];
+  return cloud.ellipses(pair).flatMap(
+      ({k, mean, covariance}) => outline(mean, covariance, {colour: colourIn(cloud, k)}));
 }
 
-function panelOf(cloud, pair, pick) {
+function panelOf(cloud, pair) {
   const axis = (a) => ({title: titleOf(cloud.windows.axes[a]), range: rangeOf(cloud, a)});
   return {
     x: axis(pair[0]),
     y: axis(pair[1]),
-    marks: [...windowPoints(cloud, pair, pick), ...ellipses(cloud, pair), ...bankPoints(cloud, pair)],
+    marks: [...windowPoints(cloud, pair), ...ellipses(cloud, pair), ...bankPoints(cloud, pair)],
   };
 }
 
-/** `pick(i)`: called after a click on window i. Null with fewer than two dimensions. */
-export function cloudFigure(cloud, pick) {
+/** Null with fewer than two dimensions. */
+export function cloudFigure(cloud) {
   if (cloud.windows.axes.length < 2) return null;
   return figure(
       'The local models in two parameters at a time, with the ellipses of the mixture components',
-      () => ({panels: pairsOf(cloud.axes).map((pair) => panelOf(cloud, pair, pick)), height: 290, wide: 300}),
+      () => ({panels: pairsOf(cloud.axes).map((pair) => panelOf(cloud, pair)), height: 290, wide: 300}),
       `Ellipses hold ${100 * cloud.windows.level} % of a mixture component, or of the windows of a mode. ` +
           'Diamonds are the modes of the bank. The tables of modes have the numbers.');
 }

@@ -1,36 +1,20 @@
-// Downloads of a page: figures as SVG and PNG, tables as CSV.
+// Downloads of tables as CSV.
 import {h} from './elements.js';
 
-/** A file name from the label of a figure or table. */
-export function fileName(label, kind) {
+/** A file name from the caption of a table. */
+export function fileName(label) {
   const words =
       label.normalize('NFKD').replace(/\p{M}/gu, '').toLowerCase().replace(/[^a-z0-9]+/g, '_').replace(/^_+|_+$/g, '');
-  return `${words.slice(0, 60) || 'file'}.${kind}`;
+  return `${words.slice(0, 60) || 'file'}.csv`;
 }
 
 /** Makes the browser save a file. */
-export function save(name, blob) {
+function save(name, blob) {
   const link = h('a', {href: URL.createObjectURL(blob), download: name, hidden: true});
   document.body.append(link);
   link.click();
   link.remove();
   setTimeout(() => URL.revokeObjectURL(link.href), 10000);
-}
-
-/**
- * Buttons that save a figure or table with this label, one per kind of file.\n@param {string} label\n@param
- * {Record<string, () => Promise<Blob>|Blob>} kinds by ending: a function that makes the file
- */
-export function downloads(label, kinds) {
-  const button = ([kind, make]) =>
-      h('button', {
-        type: 'button',
-        class: 'download',
-        'aria-label': `${kind.toUpperCase()} of: ${label}`,
-        onclick: async () => save(fileName(label, kind), await make()),
-      },
-        kind.toUpperCase());
-  return h('span', {class: 'downloads'}, Object.entries(kinds).map(button));
 }
 
 const quoted = (text) => (/[",\n\r]/.test(text) ? `"${text.replace(/"/g, '""')}"` : text);
@@ -46,7 +30,17 @@ function cellText(cell) {
 export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n').join('');
 
 /** A table in the order of the page, with numbers as exact as the archive's. */
-export function tableFile(table) {
+function tableFile(table) {
   const rows = [...table.rows].filter((row) => !row.querySelector('input, select'));
   return new Blob([csvOf(rows.map((row) => [...row.cells].map(cellText)))], {type: 'text/csv;charset=utf-8'});
 }
+
+/** A button that saves a table with this caption. */
+export const csvButton = (label, table) =>
+    h('button', {
+      type: 'button',
+      class: 'download',
+      'aria-label': `CSV of: ${label}`,
+      onclick: () => save(fileName(label), tableFile(table)),
+    },
+      'CSV');

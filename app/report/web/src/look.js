@@ -2,7 +2,7 @@
 // background: shade() (colour.js) for elements and SVG, onCanvas() for a canvas.
 import palette from '../palette.json';
 
-import {hueColour, onGround, paletteColour, translucent, usedColour} from './colour.js';
+import {hueColour, onGround, paletteColour, translucent} from './colour.js';
 import {hueOf, isOther} from './mode_names.js';
 import {dark} from './page.js';
 
@@ -11,7 +11,6 @@ export {palette, translucent};
 /** The colour of text and of measurements. */
 export const INK = 'var(--ink)';
 export const inkNow = () => (dark() ? '#e8eaee' : '#16181d');
-export const groundNow = () => (dark() ? '#14161a' : '#ffffff');
 
 /** A colour in the present theme. */
 export const onCanvas = (colour) => (colour === INK ? inkNow() : onGround(colour, dark()));
@@ -21,8 +20,6 @@ export const coloured = (it) => ({...it, colour: onCanvas(it.colour)});
 export const canvasLook = () => ({
   ink: inkNow(),
   faint: dark() ? '#2c313a' : '#e4e7ec',
-  ground: groundNow(),
-  mark: dark() ? '#e8eaee26' : '#16181d24',
 });
 
 // Modes of one family share a hue. The most used families have the first hues of the palette. Rarely used families are
@@ -32,6 +29,5 @@ export function modeColour(k) {
   const {hue, turn} = hueOf(k);
   return hueColour(palette, hue, turn);
 }
-export const rankColour = (rank) => usedColour(palette, rank);
 export const componentColour = (k) => paletteColour(palette, k);
 export const filterColour = (name) => palette.filters[name] || INK;

@@ -18,9 +18,6 @@ export function familiesOf(bank) {
 /** Whether some family has several modes. */
 export const hasFamilies = (bank) => bank.families.length < bank.modes.length;
 
-/** A mode in a column of a page of several banks: its number and its label. */
-export const nameOf = (bank, k) => (bank.modes[k].name ? `${k} ${bank.modes[k].name}` : String(k));
-
 export const othersName = (count) => `${count} other${count === 1 ? '' : 's'}`;
 
 /** The legend of a bank; `bank` may be missing. */

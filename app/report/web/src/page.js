@@ -1,6 +1,5 @@
 // The parts that every page has: head, contents, theme.
 import {h} from './elements.js';
-import {finishWhenIdle} from './finishing.js';
 
 // A section of the page, with its entry in the contents.
 export function section(id, title, ...content) {
@@ -17,53 +16,22 @@ export function section(id, title, ...content) {
 }
 
 const darkWanted = () => matchMedia('(prefers-color-scheme: dark)');
-const listeners = [];
+export const dark = () => darkWanted().matches;
 export function onTheme(listener) {
-  listeners.push(listener);
+  darkWanted().addEventListener('change', listener);
 }
-export function dark() {
-  const forced = document.documentElement.dataset.theme;
-  return forced ? forced === 'dark' : darkWanted().matches;
-}
+
+// The theme in which canvases are drawn, for paper.
 const markTheme = () => {
   document.documentElement.dataset.drawn = dark() ? 'dark' : 'light';
 };
-const announce = () => {
-  markTheme();
-  listeners.forEach((listener) => listener());
-};
-
-// Figures to draw while the browser is idle.
-const unfinished = [];
-// `place`: the element that contains the drawing.
-export function drawWhenIdle(finish, place = null) {
-  unfinished.push({finish, place});
-}
-
-function themeSwitch() {
-  const button = h('button', {type: 'button', id: 'theme'});
-  const label = () => {
-    button.textContent = dark() ? 'Light' : 'Dark';
-    button.setAttribute('aria-label', `Switch to ${dark() ? 'light' : 'dark'} colours`);
-  };
-  const change = () => {
-    label();
-    announce();
-  };
-  button.addEventListener('click', () => {
-    document.documentElement.dataset.theme = dark() ? 'light' : 'dark';
-    change();
-  });
-  darkWanted().addEventListener('change', change);
-  label();
-  return button;
-}
 
 export function head(title, subtitle) {
   const name =
       h('div', {style: 'min-width:0'}, h('h1', {}, title), subtitle ? h('div', {class: 'soft'}, subtitle) : null);
-  document.getElementById('top').append(name, themeSwitch());
+  document.getElementById('top').append(name);
   markTheme();
+  onTheme(markTheme);
 }
 
 // Resolves when the whole page is parsed. This script starts before the browser has read the arrays after it.
@@ -88,7 +56,6 @@ export async function draw(body, first = () => undefined) {
     await parsed();
     await body();
     document.documentElement.dataset.ready = 'true';
-    finishWhenIdle(unfinished);
   } catch (error) {
     const text = `This page could not be drawn: ${error.message}`;
     document.getElementById('main').append(h('p', {class: 'failure note bad', role: 'alert'}, text));

@@ -1,10 +1,6 @@
 // Pens that draw time plots: one for the screen (canvas) and one for files (SVG). Both give the same picture. A path is
 // a function that calls moveTo, lineTo, arc, rect, ... on its argument.
-import {path as d3Path} from 'd3-path';
-
-import {s} from './elements.js';
-
-export const font = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
+const font = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 const dashes = {
   dash: [6, 4],
   dot: [2, 3]
@@ -64,55 +60,6 @@ export function canvasPen(context) {
       context.clip();
       body();
       context.restore();
-    },
-  };
-}
-
-let clips = 0;
-const anchors = {
-  left: 'start',
-  center: 'middle',
-  right: 'end'
-};
-
-/**
- * A pen that appends its drawing to an SVG element.
- * @param {Element} root
- * @returns {Pen}
- */
-export function svgPen(root) {
-  let place = root;
-  const put = (path, attributes) => {
-    const record = d3Path();
-    path(record);
-    place.append(s('path', {d: record.toString(), ...attributes}));
-  };
-  return {
-    line: (path, {colour, width = 1, dash}) => put(path, {
-      fill: 'none',
-      stroke: colour,
-      'stroke-width': width,
-      'stroke-dasharray': dash ? dashes[dash].join(' ') : null,
-      'stroke-linejoin': 'round',
-    }),
-    area: (path, colour) => put(path, {fill: colour}),
-    boxes: (boxes, colour) => put(
-        (record) => {
-          for (let i = 0; i < boxes.length; i += 4) record.rect(boxes[i], boxes[i + 1], boxes[i + 2], boxes[i + 3]);
-        },
-        {fill: colour}),
-    text: (text, x, y, {colour, size = 11, align = 'left', bold}) => {
-      const attributes = {'font-size': size, 'font-weight': bold ? 'bold' : null, 'text-anchor': anchors[align]};
-      place.append(s('text', {x, y, fill: colour, ...attributes}, text));
-      return 0.58 * size * text.length;
-    },
-    within: (box, body) => {
-      const outer = place, id = `clip${++clips}`;
-      const group = s('g', {'clip-path': `url(#${id})`});
-      outer.append(s('clipPath', {id}, s('rect', {...box})), group);
-      place = group;
-      body();
-      place = outer;
     },
   };
 }

@@ -73,7 +73,6 @@ function outsideMark(rows, key, {side, role}, n, count) {
     width: 0.94 * width,
     colour: sideColours[side],
     opacity: role === 'test' ? 1 : faint,
-    tip: (i) => `${shortNames[rows[i].filter]}, ${sideNames[side]}, ${roleNames[role]}: ${cell(rows[i]).t}`,
   };
 }
 

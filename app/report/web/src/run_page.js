@@ -25,9 +25,9 @@ function pickers(state, filters, options) {
     if (filter) filter.selectedIndex = options.chosen;
   });
   const listen = state.changed.bind(state);
-  state.changed = (except) => {
+  state.changed = () => {
     showChosen();
-    return listen(except);
+    return listen();
   };
   const select = (label) => label && label.querySelector('select');
   return () => {
@@ -67,13 +67,13 @@ function drawData(runs, state, options, picker) {
       dataPlot(runs, state, filters, options));
 }
 
-async function drawWindows(windows, runs, goTo) {
+async function drawWindows(windows) {
   if (!windows) {
     section('windows', 'Local models', note('This archive has no windows.'));
     return;
   }
   const place = section('windows', 'Local models');
-  place.append(...await drawCloud(windows, runs.names, goTo));
+  place.append(...await drawCloud(windows));
   const all = `${windows.count.t} windows of ${windows.length} transitions`;
   const text = windows.step > 1 ? `${all}; every ${windows.step}th is drawn.` : `${all}.`;
   place.querySelector('h2').after(h('p', {}, text));
@@ -114,13 +114,7 @@ async function drawRest() {
   drawData(runs, state, options, picker);
   drawBank(data.bank);
   drawFilter(data.filter, runs, state);
-  await drawWindows(data.windows, runs, (run, begin, end) => {
-    const drawn = runs.runs.findIndex(({position}) => position === run);
-    if (drawn < 0) return;
-    const around = 3 * (end - begin), {time} = runs.runs[drawn];
-    state.select(drawn, [Math.max(time.start, begin - around), Math.min(time.end, end + around)], [begin, end]);
-    document.getElementById('data').scrollIntoView();
-  });
+  await drawWindows(data.windows);
   drawSelection(data.selection);
   drawOrigin(data.origin);
 }

@@ -24,8 +24,7 @@ function curves(candidates, key) {
         (row) => row.covariance === covariance && row.status === 'fitted' && valueOf(row, key) !== null);
     if (!rows.length) return [];
     const x = rows.map((row) => row.components), y = rows.map((row) => valueOf(row, key));
-    const tip = (i) => `${covariance}, K = ${x[i]}: ${rows[i][key].t}`;
-    return [{kind: 'line', x, y, colour, dash}, {kind: 'points', name: covariance, x, y, colour, symbol, size: 6, tip}];
+    return [{kind: 'line', x, y, colour, dash}, {kind: 'points', name: covariance, x, y, colour, symbol, size: 6}];
   });
 }
 
@@ -42,8 +41,7 @@ function panels(candidates) {
   const drawing = {panels: list.map(panelOf), height: 150, wide: 330, legend: keys.length > 1 ? keys : null};
   return figure(
       'Criteria over the number of components; the table below has the same numbers', () => drawing,
-      `Lower is better.${
-          chosen ? ` Dashed: the chosen K = ${chosen.components}.` : ''}`);
+      `Lower is better.${chosen ? ` Dashed: the chosen K = ${chosen.components}.` : ''}`);
 }
 
 const number = (name, key) => ({name, of: (row) => row[key]});

@@ -4,7 +4,7 @@ import {h, value} from './elements.js';
 import {modeColour} from './look.js';
 import {section} from './page.js';
 import {cellOf, headingOf, scrolling} from './table.js';
-import {withTips} from './tips.js';
+import {meaningOf} from './terms.js';
 
 const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 
@@ -15,14 +15,14 @@ const breakable = (text) => text.replace(/ (±|%|s\b|m\b)/g, '\u00a0$1').replace
 const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
 // Browsers break lines after hyphens. Without this, `--filter.horizon` could be split.
 const words = (text) => text.split(' ').flatMap((word, i) => [i ? ' ' : null, h('span', {class: 'word'}, word)]);
-const withCode = (text, other = (part) => part) =>
-    text.split(command).map((part, i) => (i % 2 ? h('code', {}, words(part.replace(/`/g, ''))) : other(part)));
+const withCode = (text) =>
+    text.split(command).map((part, i) => (i % 2 ? h('code', {}, words(part.replace(/`/g, ''))) : part));
 
 function card(row) {
   return h(
-      'li', {'data-card': row.key}, h('div', {class: 'name'}, withTips(row.name)),
-      h('div', {}, h('span', {class: 'big'}, value(row.big)), ' ', h('span', {class: 'soft'}, withTips(row.unit))),
-      h('div', {class: 'said'}, withCode(row.said, withTips)));
+      'li', {'data-card': row.key}, h('div', {class: 'name', title: meaningOf(row.name)}, row.name),
+      h('div', {}, h('span', {class: 'big'}, value(row.big)), ' ', h('span', {class: 'soft'}, row.unit)),
+      h('div', {class: 'said'}, withCode(row.said)));
 }
 
 const cardList = (id, rows) => (rows.length ? h('ul', {class: 'numbers', id}, rows.map(card)) : null);
@@ -52,8 +52,7 @@ export function drawVerdict(verdict) {
   const of = (wanted) => verdict.cards.filter((row) => (row.key === 'coverage') === wanted);
   const said =
       h('div', {id: 'said', class: `verdict ${sort}`}, h('p', {class: 'answer'}, capital(verdict.headline), '.'),
-        h('p', {}, withCode(verdict.text, withTips)),
-        (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
+        h('p', {}, withCode(verdict.text)), (verdict.equations || []).map((line) => h('p', {}, h('code', {}, line))));
   const use =
       verdict.use ? h('p', {id: 'use', class: 'note'}, withCode(capital(verdict.use).replace(/ \+- /g, ' ± '))) : null;
   const warning = verdict.warning ? h('p', {id: 'warning', class: 'soft'}, h('strong', {}, 'Warning: '),
@@ -61,6 +60,6 @@ export function drawVerdict(verdict) {
                                     null;
   section(
       'verdict', 'Verdict',
-      h('div', {class: 'screen'}, said, cardList('coverage', of(true)), use,
-        cardList('scores', of(false)), verdict.modes ? modesTable(verdict.modes) : null, warning));
+      h('div', {class: 'screen'}, said, cardList('coverage', of(true)), use, cardList('scores', of(false)),
+        verdict.modes ? modesTable(verdict.modes) : null, warning));
 }

@@ -23,13 +23,8 @@ export function bestSetting(settings, goal) {
       (best, one) => (best === null || lossOf(goal, one.mean) < lossOf(goal, best.mean) ? one : best), null);
 }
 
-// Summarises settings by the best one or by the mean over their runs. With the first choice, the best of all levels is
-// the study's best setting.
-export function reached(settings, goal, by) {
-  if (!settings.length) return null;
-  if (by === 'best') return bestSetting(settings, goal).mean;
-  return mean(settings.flatMap((one) => one.rows.map(() => one.mean)));
-}
+// The mean of the best setting; null without settings. The best of all levels is the study's best setting.
+export const reached = (settings, goal) => (settings.length ? bestSetting(settings, goal).mean : null);
 
 // The level of the axis to which a setting belongs.
 export const levelOf = (axis, setting) => axis.of(setting.rows[0]);

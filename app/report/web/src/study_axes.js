@@ -1,5 +1,5 @@
 // Columns of a study as axes of plots, and state that the plots share. `context` of a plot: {study, shown: {rows,
-// listeners}, showRun(row)}.
+// listeners}}.
 import {choice} from './elements.js';
 import {plainValue} from './ordering.js';
 import {columnTitle} from './score_names.js';
@@ -25,17 +25,4 @@ export const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
 export function scoreChoice(study, begin, onchange) {
   const scores = namesOf(study, 'score');
   return choice('Score', scores.map(columnTitle), positionOf(scores, begin), (i) => onchange(scores[i]));
-}
-
-// Two ways to summarise the runs with one value of a key: the best score, as in the verdict, or the mean.
-const ways = [['best', 'best over the other keys'], ['mean', 'average over the other keys']];
-export const wayWords = {
-  best: 'best',
-  mean: 'mean'
-};
-export const wayChoice = (onchange) => choice('Show', ways.map(([, text]) => text), 0, (i) => onchange(ways[i][0]));
-
-// Draws the figure again when other runs are shown.
-export function follow(context, element) {
-  context.shown.listeners.push(() => element.update());
 }

@@ -5,19 +5,18 @@ import {palette} from './look.js';
 import {section} from './page.js';
 import {bestCell, bestSetting, levelOf, reached, settingsOf} from './settings.js';
 import {isNumber} from './statistics.js';
-import {axisOf, follow, namesOf, scoreChoice, wayChoice, wayWords} from './study_axes.js';
+import {axisOf, namesOf, scoreChoice} from './study_axes.js';
 
 const spread = 0.16;  // width over which the runs of a level are scattered, relative to the width of the level
 
 // Runs as dots, a line at the summary of each level, and a star at the best level.
-function effectMarks(axis, score, rows, by, showRun) {
+function effectMarks(axis, score, rows) {
   const level = (row) => axis.position.get(axis.of(row));
   const strewn = (row) => level(row) + spread * (((row.number * 0.618) % 1) - 0.5);
   const points = rows.filter((row) => isNumber(score.of(row)) && axis.of(row) !== null);
   const settings = settingsOf(points, score), x = axis.levels.map((_, k) => k);
-  const y = axis.levels.map((value) => reached(settings.filter((one) => levelOf(axis, one) === value), score.goal, by));
+  const y = axis.levels.map((value) => reached(settings.filter((one) => levelOf(axis, one) === value), score.goal));
   const best = bestCell([y], score.goal), colour = palette.modes[0];
-  const tip = (k) => `${axis.label} = ${axis.levels[k]}: ${wayWords[by]} ${Number(y[k].toPrecision(5))}`;
   const there = x.filter((k) => y[k] !== null);
   return [
     {
@@ -27,58 +26,49 @@ function effectMarks(axis, score, rows, by, showRun) {
       colour: palette.unclustered,
       size: 5,
       opacity: 0.7,
-      tip: (i) => `run ${points[i].number}: ${Number(score.of(points[i]).toPrecision(4))}`,
-      pick: (i) => showRun(points[i]),
     },
     {kind: 'line', x: there, y: there.map((k) => y[k]), colour, width: 2.5},
-    {kind: 'points', name: 'main effect', x, y, colour, size: 8, tip},
+    {kind: 'points', name: 'main effect', x, y, colour, size: 8},
     ...(best ? [{kind: 'points', x: [best.a], y: [best.value], colour, size: 14, symbol: 'star'}] : []),
   ];
 }
 
 // The range in which levels differ. Without it, one bad level of another key would flatten the lines. Null: all values.
-function usefulRange(axes, score, rows, by) {
+function usefulRange(axes, score, rows) {
   const settings = settingsOf(rows, score);
-  const values =
-      axes.flatMap(
-              (axis) => axis.levels.map(
-                  (value) => reached(settings.filter((one) => levelOf(axis, one) === value), score.goal, by)))
-          .filter(isNumber);
+  const values = axes.flatMap(
+                         (axis) => axis.levels.map(
+                             (value) => reached(settings.filter((one) => levelOf(axis, one) === value), score.goal)))
+                     .filter(isNumber);
   if (!values.length) return null;
   const low = Math.min(...values), high = Math.max(...values), room = 0.5 * (high - low) || 0.1 * Math.abs(high) || 1;
   const all = settings.map((one) => one.mean);
   return [Math.max(low - room, Math.min(...all) - 0.1 * room), Math.min(high + room, Math.max(...all) + 0.2 * room)];
 }
 
-function effectsDrawing(axes, score, rows, by, showRun) {
-  const range = usefulRange(axes, score, rows, by), best = bestSetting(settingsOf(rows, score), score.goal);
+function effectsDrawing(axes, score, rows) {
+  const range = usefulRange(axes, score, rows), best = bestSetting(settingsOf(rows, score), score.goal);
   const line = best ? [{kind: 'rule', y: best.mean, dash: 'dot'}] : [];
   const panels = axes.map((axis) => ({
                             x: {title: axis.label, levels: axis.levels.map(String)},
                             y: {title: score.label, range},
-                            marks: [...effectMarks(axis, score, rows, by, showRun), ...line],
+                            marks: [...effectMarks(axis, score, rows), ...line],
                           }));
   return {panels, height: 210, wide: 280};
 }
 
-export function drawEffects(context) {
-  const {study, shown, showRun} = context;
+export function drawEffects(study) {
   const axes = namesOf(study, 'varied').map((key) => axisOf(study, key)).filter((axis) => axis.levels.length > 1);
-  let score = study.standard_score, by = 'best';
+  let score = study.standard_score;
   const element = figure(
       'Main effects: scores by the values of each varied key',
-      () => effectsDrawing(axes, axisOf(study, score), shown.rows, by, showRun),
-      'Line: the best setting with that value over all other keys (or, if chosen, the mean of its runs); star: ' +
+      () => effectsDrawing(axes, axisOf(study, score), study.rows),
+      'Line: the best setting with that value over all other keys; star: ' +
           'the best value; dotted: the best setting of all; dots: the runs, those far below outside the frame.');
   const pick = scoreChoice(study, score, (name) => {
     score = name;
     element.update();
   });
-  const way = wayChoice((chosen) => {
-    by = chosen;
-    element.update();
-  });
   const content = axes.length ? element : h('p', {}, 'No key has more than one value.');
-  section('effects', 'Main effects', controls(pick, way), content);
-  follow(context, element);
+  section('effects', 'Main effects', controls(pick), content);
 }

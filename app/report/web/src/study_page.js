@@ -1,4 +1,4 @@
-// The page of a study: a table of runs with sorting and filters, and the effects of varied keys on scores.
+// The page of a study: a table of runs, and the effects of varied keys on scores.
 import {copyButton, details, facts, h, note} from './elements.js';
 import {draw, head, section} from './page.js';
 import {pageData} from './page_data.js';
@@ -70,9 +70,7 @@ function markChosen(row) {
 
 draw(async () => {
   const data = pageData(), {study} = data;
-  const shown = {rows: study.rows, listeners: []};  // runs that pass the filters; all plots show these runs
-  const detail = h(
-      'div', {id: 'run-detail', tabindex: -1, 'aria-live': 'polite'}, note('Choose a run in the table or in a plot.'));
+  const detail = h('div', {id: 'run-detail', tabindex: -1, 'aria-live': 'polite'}, note('Choose a run in the table.'));
   let chosen = null;
   const showRun = (row) => {
     chosen = row;
@@ -80,17 +78,13 @@ draw(async () => {
     markChosen(row);
     detail.scrollIntoView({block: 'nearest'});
   };
-  const filter = (rows) => {
-    shown.rows = rows;
-    shown.listeners.forEach((listener) => listener());
-  };
   document.title = `Study ${data.file}`;
   head(`Study ${data.file}`, `${study.rows.length} runs, made ${data.origin.created}`);
   drawVerdict(study, showRun);
   drawBetter(study, showRun);
   const runs = section('runs', 'Runs');
-  drawStudyTable(runs, study, {filter, showRun, chosen: () => chosen});
+  drawStudyTable(runs, study, {showRun, chosen: () => chosen});
   runs.append(detail);
-  drawEffects({study, shown, showRun});
+  drawEffects(study);
   drawOrigin(study, data.origin);
 });

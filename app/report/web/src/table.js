@@ -1,9 +1,8 @@
 // Tables that can be sorted by their headings.
-import {downloads, tableFile} from './downloads.js';
+import {csvButton} from './downloads.js';
 import {h, swatch, value} from './elements.js';
 import {sortedRows} from './ordering.js';
 import {meaningOf} from './terms.js';
-import {describe, headingWithTip} from './tips.js';
 
 // The cell of a row. Columns are {name, text: true for words, prose: true for sentences, of: row => cell, swatch: row
 // => colour or null}.
@@ -16,10 +15,10 @@ export function cellOf(column, row) {
   return cell;
 }
 
-// `content`: the text of the heading, or the button that sorts. Both have a tip that explains the column.
+// `content`: the text of the heading, or the button that sorts. The title explains the column.
 export function headingOf(column, attributes, content) {
-  const told = content instanceof Element ? describe(content, meaningOf(column.name)) : headingWithTip(content);
-  return h('th', {scope: 'col', class: column.text || column.prose ? 'text' : null, ...attributes}, told);
+  const kind = column.text || column.prose ? 'text' : null;
+  return h('th', {scope: 'col', class: kind, title: meaningOf(column.name), ...attributes}, content);
 }
 
 // The button of a heading. `order`: the present order of the table, {column, down}.
@@ -32,8 +31,7 @@ export function pressed(order, column) {
 }
 
 export const scrolling = (label, element) =>
-    h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element,
-      downloads(label, {csv: () => tableFile(element)}));
+    h('div', {class: 'scroll', tabindex: 0, role: 'region', 'aria-label': label}, element, csvButton(label, element));
 
 // `options`: caption, chosen: row => bool, sortable.
 export function table(columns, rows, options = {}) {

@@ -6,4 +6,3 @@ import {Glossary} from './glossary.js';
 const glossary = new Glossary(terms);
 
 export const meaningOf = (heading) => glossary.meaningOf(heading);
-export const termsIn = (sentence) => glossary.termsIn(sentence);

@@ -10,8 +10,8 @@ import {extent, margins, timeScale, valueScale} from './time_axes.js';
  * Trace
  * @typedef {{traces: Trace[], range: [number, number]|null, log: boolean,
  *   levels: {height: number, colour: string}[]}} Content
- * @typedef {{width: number, height: number, last: boolean, range: [number, number], mark: [number, number]|null}} Frame
- * @typedef {{ink: string, faint: string, ground: string, mark: string}} Look
+ * @typedef {{width: number, height: number, last: boolean, range: [number, number]}} Frame
+ * @typedef {{ink: string, faint: string}} Look
  */
 
 export const axis_px = 34;  // height of the time axis below the last panel
@@ -193,11 +193,6 @@ export function drawPanel(pen, frame, content, look) {
   const times = timeScale(frame.range, frame.width);
   const values = valueScale(content.range || extent(content.traces), above, floor, content.log);
   const box = {x: left, y: above, width: frame.width - left - right, height: floor - above};
-  pen.within(box, () => {
-    if (!frame.mark) return;
-    const [from, to] = frame.mark.map(times.to);
-    pen.area((context) => context.rect(from, above, Math.max(1, to - from), box.height), look.mark);
-  });
   drawAxes(pen, frame, times, values, look);
   pen.within(box, () => {
     drawTraces(pen, content.traces, times.to, values.to);

@@ -1,18 +1,14 @@
 // Panels over time, one above the other. Above each panel is the readout of its signals.
-import {downloads} from './downloads.js';
-import {h, s, swatch} from './elements.js';
-import {canvasLook, coloured, groundNow} from './look.js';
+import {h, swatch} from './elements.js';
+import {canvasLook, coloured} from './look.js';
 import {rangeText, secondsText} from './number_text.js';
-import {drawWhenIdle, onTheme} from './page.js';
-import {canvasPen, font, svgPen} from './pens.js';
+import {onTheme} from './page.js';
+import {canvasPen} from './pens.js';
 import {view} from './signals.js';
 import {margins, timeScale} from './time_axes.js';
 import {axis_px, drawPanel} from './time_drawing.js';
 import {listenToPointer} from './time_gestures.js';
-import {listenToKeys} from './time_keys.js';
 import {inTurn, whenNear} from './turns.js';
-
-const title_px = 22;  // height of a panel's title in an exported file
 
 /** Resolves at the next frame, or at once in a hidden page, which has no frames. */
 const nextFrame = () => new Promise((done) => (document.hidden ? done() : requestAnimationFrame(() => done())));
@@ -52,8 +48,7 @@ class TimePlot {
     this.crosshair = h('div', {class: 'crosshair', hidden: true});
     this.chosen = h('div', {class: 'chosen-span', hidden: true});
     this.time = h('p', {class: 'soft crosshair-time'}, 'Point at the plot to read its signals.');
-    this.plot = h(
-        'div', {class: 'plot timeplot', tabindex: 0, role: 'group', 'aria-label': label}, this.crosshair, this.chosen);
+    this.plot = h('div', {class: 'plot timeplot', role: 'group', 'aria-label': label}, this.crosshair, this.chosen);
     this.drawn = false;
     this.said = '';  // last readout, to detect changes
     this.saidIn = null;
@@ -86,7 +81,7 @@ class TimePlot {
                                              log: Boolean(row.log),
                                              levels: (row.levels ? row.levels() : []).map(coloured),
                                            })));
-    const frame = (i) => ({width, height: rows[i].height, last: i === rows.length - 1, range, mark: state.mark});
+    const frame = (i) => ({width, height: rows[i].height, last: i === rows.length - 1, range});
     return all.map((content, i) => ({content, frame: frame(i)}));
   }
 
@@ -135,8 +130,8 @@ class TimePlot {
     if (said === this.said && this.panels === this.saidIn) return;
     Object.assign(this, {said, saidIn: this.panels});
     entries.forEach((list, i) => this.panels[i].readout.replaceChildren(...list.map(entryItem)));
-    this.time.textContent = at === null ? 'Point at the plot, or focus it and press → or ←, to read its signals.' :
-                                          `Crosshair at ${secondsText(at)}, sample ${k}.`;
+    this.time.textContent =
+        at === null ? 'Point at the plot to read its signals.' : `Crosshair at ${secondsText(at)}, sample ${k}.`;
   }
 
   choose(span) {
@@ -146,68 +141,12 @@ class TimePlot {
     this.chosen.style.left = `${Math.min(...span) - left}px`;
     this.chosen.style.width = `${Math.abs(span[1] - span[0])}px`;
   }
-
-  // Draws the whole figure. `begin(top)` returns the pen of a panel, with its origin at the panel's corner.
-  async drawFile(width, begin) {
-    const rows = this.rows(), parts = await this.contents(rows, width), colours = canvasLook();
-    let top = 0;
-    parts.forEach(({content, frame}, i) => {
-      const pen = begin(top), {left} = margins(width);
-      let x = left + pen.text(rows[i].title, left, 15, {colour: colours.ink, bold: true}) + 16;
-      for (const {name, colour} of uniqueNames(content.traces)) {
-        pen.area((context) => context.rect(x, 7, 9, 9), colour);
-        x += 13 + pen.text(name, x + 13, 15, {colour: colours.ink}) + 14;
-      }
-      drawPanel(begin(top + title_px), frame, content, colours);
-      top += title_px + frame.height + (frame.last ? axis_px : 0);
-    });
-  }
-
-  fileHeight() {
-    return this.rows().reduce((sum, row) => sum + row.height + title_px, axis_px);
-  }
-
-  async svg() {
-    const width = this.plot.clientWidth, height = this.fileHeight();
-    const root =
-        s('svg',
-          {xmlns: 'http://www.w3.org/2000/svg', width, height, viewBox: `0 0 ${width} ${height}`, 'font-family': font},
-          s('rect', {width, height, fill: groundNow()}));
-    await this.drawFile(width, (top) => {
-      const group = s('g', {transform: `translate(0 ${top})`});
-      root.append(group);
-      return svgPen(group);
-    });
-    return new Blob([new XMLSerializer().serializeToString(root)], {type: 'image/svg+xml'});
-  }
-
-  async png() {
-    const width = this.plot.clientWidth, ratio = 3;
-    const canvas =
-        /** @type {HTMLCanvasElement} */ (h('canvas', {width: width * ratio, height: this.fileHeight() * ratio}));
-    const context = canvas.getContext('2d');
-    context.fillStyle = groundNow();
-    context.fillRect(0, 0, canvas.width, canvas.height);
-    await this.drawFile(width, (top) => {
-      context.setTransform(ratio, 0, 0, ratio, 0, top * ratio);
-      return canvasPen(context);
-    });
-    return new Promise((done) => canvas.toBlob(done, 'image/png'));
-  }
-}
-
-function uniqueNames(traces) {
-  const seen = new Map(traces.map((trace) => [trace.name, trace]));
-  return [...seen.values()].slice(0, 8);
 }
 
 // `rows()`: the rows of time_rows.js, from top to bottom.
 export function timePlot(state, label, rows, caption) {
   const it = new TimePlot(state, label, rows), {plot} = it;
-  const files = downloads(label, {svg: () => it.svg(), png: () => it.png()});
-  const element =
-      h('figure', {}, plot, h('div', {class: 'below-plot'}, it.time, files),
-        caption ? h('figcaption', {class: 'caption'}, caption) : null);
+  const element = h('figure', {}, plot, it.time, caption ? h('figcaption', {class: 'caption'}, caption) : null);
   const redraw = oncePerFrame(() => it.draw()), read = oncePerFrame(() => it.read());
   element.plot = plot;
   plot.timePlot = it;
@@ -233,12 +172,7 @@ export function timePlot(state, label, rows, caption) {
     time: (x) => it.scale().from(x - plot.getBoundingClientRect().left),
     choose: (span) => it.choose(span),
   });
-  listenToKeys(plot, state);
   new ResizeObserver(() => element.refresh()).observe(plot);
-  drawWhenIdle(() => {
-    element.begin();
-    return element.ready;
-  });
   onTheme(() => (it.drawn ? it.draw() : undefined));
   state.plots.push(element);
   return element;

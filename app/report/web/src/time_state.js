@@ -4,14 +4,12 @@ import {clock} from './signals.js';
 const fewest_samples = 4;  // smallest number of visible samples
 
 /**
- * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, a field or the link, which shows the\n
- * state
+ * @typedef {{refresh: () => Promise<unknown>, point?: () => void}} View a plot, which shows the state
  */
 
 // Members:
 // run;
 // range: [from, to] in seconds, or null for the whole run;
-// mark: [from, to] or null;
 // at: time of the crosshair or null.
 // `changed` notifies views of all changes, `pointed` only of changes of the crosshair.
 export class TimeState {
@@ -20,8 +18,6 @@ export class TimeState {
     this.run = Math.max(0, runs.findIndex((run) => run.role === 'test'));
     /** @type {[number, number]|null} */
     this.range = null;
-    /** @type {[number, number]|null} */
-    this.mark = null;
     /** @type {number|null} */
     this.at = null;
     /** @type {View[]} */
@@ -43,17 +39,16 @@ export class TimeState {
   shown() {
     return this.range || this.whole();
   }
-  /** @param {View} [except] */
-  changed(except) {
-    return Promise.all(this.plots.filter((plot) => plot !== except).map((plot) => plot.refresh()));
+  changed() {
+    return Promise.all(this.plots.map((plot) => plot.refresh()));
   }
   pointed() {
     for (const plot of this.plots) {
       if (plot.point) plot.point();
     }
   }
-  select(run, range = null, mark = null) {
-    Object.assign(this, {run, range, mark, at: null});
+  select(run) {
+    Object.assign(this, {run, range: null, at: null});
     return this.changed();
   }
   // Limits a range to the run.
@@ -65,9 +60,9 @@ export class TimeState {
     const from = Math.max(start, Math.min(end - width, begin));
     return width >= end - start ? null : /** @type {[number, number]} */ ([from, from + width]);
   }
-  zoom(range, except) {
+  zoom(range) {
     this.range = this.inside(range);
-    return this.changed(except);
+    return this.changed();
   }
   move(share) {
     const [a, b] = this.shown(), by = share * (b - a);
@@ -79,7 +74,6 @@ export class TimeState {
     return this.zoom([center - factor * (center - a), center + factor * (b - center)]);
   }
   showAll() {
-    this.mark = null;
     return this.zoom(this.whole());
   }
   // Moves the crosshair to the sample nearest to time t; null removes the crosshair.

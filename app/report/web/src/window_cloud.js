@@ -1,34 +1,26 @@
 // Local models as points of a cloud: their groups, Gaussians and visibility. This file does not draw.
 import {part} from './ellipse.js';
-import {modeCell, modeTitle, rankOf} from './mode_names.js';
+import {modeTitle, rankOf} from './mode_names.js';
 
 /**
- * @typedef {{run: Int32Array, begin: Float64Array, end: Float64Array, label: Int32Array|null, mode: Int32Array|null,
- *   values: Float32Array[], covariance: Float32Array[]|null}} WindowArrays
+ * @typedef {{label: Int32Array|null, mode: Int32Array|null, values: Float32Array[]}} WindowArrays
  */
 
 export class WindowCloud {
   /**
    * @param {any} windows C++'s windows_section
    * @param {WindowArrays} arrays from loadWindows
-   * @param {string[]} runs names
    */
-  constructor(windows, arrays, runs) {
+  constructor(windows, arrays) {
     this.windows = windows;
-    this.runs = runs;
-    this.run = arrays.run;
-    this.begin = arrays.begin;
-    this.end = arrays.end;
     this.label = arrays.label;
     this.mode = arrays.mode;
     this.values = arrays.values;
-    this.covariance = arrays.covariance;
-    this.count = this.run.length;
+    this.count = this.values[0].length;
     this.axes = windows.default_axes;
     this.by = this.firstGrouping();
     this.showAll = false;  // whether outlying windows are also shown
     this.showBank = true;
-    this.picked = -1;
     this.hidden = new Set();  // hidden groups
   }
 
@@ -80,21 +72,9 @@ export class WindowCloud {
         .sort((a, b) => b.reach - a.reach);
   }
 
-  // Whether all axes are parameters. Only parameters have standard errors and exist in the bank.
+  // Whether all axes are parameters. Only parameters exist in the bank.
   parametersOnly(axes) {
     return axes.every((a) => a < this.windows.parameters);
-  }
-
-  // Entry (a, b) of the error covariance of window i. The covariance is stored as its lower triangle, row by row.
-  covarianceOf(i, a, b) {
-    const row = Math.max(a, b), column = Math.min(a, b);
-    return this.covariance[(row * (row + 1)) / 2 + column][i];
-  }
-  errorMatrix(i, axes) {
-    return axes.map((a) => axes.map((b) => this.covarianceOf(i, a, b)));
-  }
-  point(i, axes) {
-    return axes.map((a) => this.values[a][i]);
   }
 
   // The Gaussians of the visible groups: mixture components, or the bank's modes with their covariance.
@@ -112,23 +92,4 @@ export class WindowCloud {
         .filter(({group, k}) => group.covariance && !this.hidden.has(k))
         .map(({group, k}) => ({k, mean: places.map((p) => group.mean[p]), covariance: part(group.covariance, places)}));
   }
-
-  place(i) {
-    return `run ${this.runs[this.run[i]]}, ${this.begin[i].toFixed(3)} to ${this.end[i].toFixed(3)} s`;
-  }
-
-  // Description of a window: its parameters with standard errors, and its groups.
-  described(i) {
-    const numbers = this.windows.axes.map((axis, a) => {
-      const known = this.covariance && a < this.windows.parameters;
-      const error = known ? ` ± ${digits(Number(Math.sqrt(this.covarianceOf(i, a, a)).toPrecision(2)))}` : '';
-      return `${axis.name} = ${digits(this.values[a][i])}${error}`;
-    });
-    /** @type {(name: string, list: Int32Array|null, said?: (k: number) => string) => string} */
-    const group = (name, list, said = String) => (list ? `; ${name} ${list[i] < 0 ? 'none' : said(list[i])}` : '');
-    return `Window in ${this.place(i)}: ${numbers.join(', ')}${group('component', this.label)}` +
-        group('mode of the filter', this.mode, modeCell);
-  }
 }
-
-export const digits = (v) => (Number.isFinite(v) ? Number(v.toPrecision(6)).toString() : '–');

@@ -2,14 +2,12 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
 import {endOf, layoutOf, wrapped} from '../src/chart_layout.js';
-import {pointAt} from '../src/chart_tip.js';
 
 const measure = (text) => 10 * text.length;
 const points = {
   kind: 'points',
   x: [0, 1, 2],
   y: [5, 6, 7],
-  tip: (i) => `point ${i}`
 };
 const panel = {
   x: {title: 'lag [samples]', whole: true},
@@ -58,23 +56,6 @@ test('names of levels that have no room are tilted, cut at their beginning, and 
   assert.ok(clear(ticks.map(({at}) => to.x(at)), 15));
   assert.ok(ticks.every(({at, text}) => text.startsWith('…') && text.endsWith(` ${at}`)));
   assert.equal(layoutOf({panels: [{...panel, x: {levels: ['a', 'b']}}]}, 360).panels[0].tilt, false);
-});
-
-test('the point next to the pointer tells what it is; far from all of them nothing does', () => {
-  const {panels} = layoutOf({panels: [panel]}, 600), [{to}] = panels;
-  assert.equal(pointAt(panels, to.x(1) + 5, to.y(6) - 5).i, 1);
-  assert.equal(pointAt(panels, to.x(1), to.y(6) + 40), null);
-});
-
-test('a bar tells over its whole width, a cell where no point is near', () => {
-  const bars = {kind: 'bars', x: [0.25, 0.75], y: [3, null], width: 0.5, tip: String};
-  const grid = {kind: 'cells', x: [0, 1], y: [0, 1], colours: [['a', 'b'], ['c', 'd']], tip: String};
-  const ofBars = layoutOf({panels: [{x: {range: [0, 1]}, y: {zero: true}, marks: [bars]}]}, 600).panels;
-  assert.equal(pointAt(ofBars, ofBars[0].to.x(0.05), ofBars[0].to.y(2.5)).i, 0);
-  assert.equal(pointAt(ofBars, ofBars[0].to.x(0.75), ofBars[0].to.y(1)), null);
-  const cells = layoutOf({panels: [{x: {range: [-0.5, 1.5]}, y: {range: [-0.5, 1.5]}, marks: [grid]}]}, 600).panels;
-  assert.equal(pointAt(cells, cells[0].to.x(0.9), cells[0].to.y(0.2)).i, 1);
-  assert.equal(pointAt(cells, cells[0].to.x(-0.2), cells[0].to.y(1.2)).i, 2);
 });
 
 test('bars begin at zero and lie within the frame', () => {

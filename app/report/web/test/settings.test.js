@@ -1,7 +1,6 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {groupedRows} from '../src/repeats.js';
 import {columnTitle} from '../src/score_names.js';
 import {bestCell, levelOf, reached, settingsOf} from '../src/settings.js';
 
@@ -40,35 +39,15 @@ test('repeats of a setting are one setting', () => {
   close(settings[2].sd, 0.04 / Math.SQRT2);
 });
 
-test('the best over the others agrees with the best setting, the average does not', () => {
+test('the best over the others agrees with the best setting', () => {
   const settings = settingsOf(rows, score);
-  const of = (by) => K.levels.map((level) => reached(settings.filter((one) => levelOf(K, one) === level), higher, by));
-  of('best').forEach((value, i) => close(value, scores.good[i]));
-  of('mean').forEach((value, i) => close(value, (scores.good[i] + scores.bad[i]) / 2));
-  assert.equal(bestCell([of('best')], higher).a, 2);
-  assert.equal(bestCell([of('mean')], higher).a, 0);
+  const best = K.levels.map((level) => reached(settings.filter((one) => levelOf(K, one) === level), higher));
+  best.forEach((value, i) => close(value, scores.good[i]));
+  assert.equal(bestCell([best], higher).a, 2);
 });
 
 test('lower is better where the goal says so', () => {
   assert.equal(bestCell([[3, null, 2]], {kind: 'lower'}).a, 2);
-});
-
-test('a line of the table holds the mean of the repeats, their spread and their seeds', () => {
-  const columns = [
-    {name: 'K', kind: 'varied'},
-    {name: 'variant', kind: 'varied'},
-    {name: 's', kind: 'score'},
-    {name: 'seed', kind: 'about'},
-    {name: 'status', kind: 'about'},
-  ];
-  const lines = groupedRows(columns, rows);
-  assert.equal(lines.length, 6);
-  close(lines[1].cells[2].v, 1.4);
-  assert.equal(lines[1].cells[2].t, '1.4 ± 0.028');
-  assert.equal(lines[1].cells[3], '1000, 1001');
-  assert.equal(lines[1].cells[4], 'done');
-  const failed = {...rows[3], cells: [...rows[3].cells.slice(0, 4), 'failed']};
-  assert.equal(groupedRows(columns, [rows[2], failed])[0].cells[4], '1 done, 1 failed');
 });
 
 test('columns in words', () => {

@@ -24,8 +24,6 @@ function notes() {
 const look = {
   ink: '#000',
   faint: '#eee',
-  ground: '#fff',
-  mark: '#ccc'
 };
 
 test('times and pixels are each other\'s inverse inside the margins', () => {
@@ -63,7 +61,7 @@ test('shares are stacked from the floor of a panel to its top', () => {
   const {pen, list} = notes();
   const trace = (y, colour) => ({kind: 'shares', x: [0, 1], y, colour, name: ''});
   const content = {traces: [trace([0.25, 1], '#111'), trace([0.75, 0], '#222')], range: [0, 1], log: false, levels: []};
-  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1], mark: null}, content, look);
+  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1]}, content, look);
   const [lower, upper] = list.filter(({kind}) => kind === 'area');
   assert.deepEqual([lower.colour, lower.points[0][2], lower.points[1][2]], ['#111', 81, 6]);
   assert.deepEqual([upper.points[0][2], upper.points[1][2]], [6, 6]);
@@ -85,7 +83,7 @@ test('shares of buckets fill a panel, too', () => {
   const {pen, list} = notes();
   const trace = (y, colour) => ({kind: 'shares', per: 4, x: [0, 0.5], y, colour, name: ''});
   const content = {traces: [trace([0.25, 1], '#111'), trace([0.75, 0], '#222')], range: [0, 1], log: false, levels: []};
-  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1], mark: null}, content, look);
+  drawPanel(pen, {width: 1000, height: 112, last: true, range: [0, 1]}, content, look);
   const [lower, upper] = list.filter(({kind}) => kind === 'boxes');
   const {left} = margins(1000), half = Math.floor(left + (1000 - 10 - left) / 2);
   assert.deepEqual([...lower.boxes], [left, 81, half - left, 25, half, 6, 1, 100]);

@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
 
-import {digits, WindowCloud} from '../src/window_cloud.js';
+import {WindowCloud} from '../src/window_cloud.js';
 
 // Four windows of a model with two parameters and one other feature. Two windows belong to component 1.
 function cloudOf(windows = {}, arrays = {}) {
@@ -18,15 +18,10 @@ function cloudOf(windows = {}, arrays = {}) {
       },
       {
         values: [Float32Array.of(1, 2, 3, 4), Float32Array.of(5, 6, 7, 80), new Float32Array(4)],
-        run: Int32Array.of(0, 0, 1, 1),
-        begin: Float64Array.of(0, 1, 2, 3),
-        end: Float64Array.of(1, 2, 3, 4),
         label: Int32Array.of(1, -1, 1, 0),
         mode: null,
-        covariance: [Float32Array.of(1, 1, 1, 1), Float32Array.of(0, 0.5, 0, 0), Float32Array.of(4, 4, 4, 4)],
         ...arrays,
-      },
-      ['first', 'second']);
+      });
 }
 
 test('groups come in order, windows without one first', () => {
@@ -47,14 +42,4 @@ test('ellipses of components follow the axes, whatever order the features have',
   const cloud = cloudOf();
   assert.deepEqual(cloud.ellipses([0, 1]), [{k: 0, mean: [20, 10], covariance: [[9, 1], [1, 4]]}]);
   assert.deepEqual(cloud.ellipses([0, 2]), []);  // the mixture does not have this feature
-});
-
-test('error covariances are stored row by row below the diagonal', () => {
-  assert.deepEqual(cloudOf().errorMatrix(1, [1, 0]), [[4, 0.5], [0.5, 1]]);
-});
-
-test('a window is described with its errors to two digits', () => {
-  assert.equal(
-      cloudOf().described(1), 'Window in run first, 1.000 to 2.000 s: A = 2 ± 1, B = 6 ± 2, log q = 0; component none');
-  assert.equal(digits(Infinity), '–');
 });

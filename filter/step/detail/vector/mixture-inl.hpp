@@ -73,7 +73,7 @@ void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
 
 /// (1 + 2 t) exp(t^2) erfc(t), t >= 0, as a polynomial in (t - 3.75) / (t + 3.75). Source: Shepherd & Laframboise 1981,
 /// "Chebyshev approximation of (1 + 2x) exp(x^2) erfc x", Mathematics of Computation 36(153). Coefficients in double
-/// precision: tests/golden/generate/normal_cdf_coefficients.py.
+/// precision.
 inline constexpr double scaled_erfc[24] = {
     1.2375126308378275266,      -0.14024059858554701439,   0.0035854154854795751663,    0.082276738490149772563,
     -0.10880393014246644782,    0.092304321160258936107,   -0.058693398576310612527,    0.02836227742037733368,

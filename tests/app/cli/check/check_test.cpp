@@ -11,7 +11,6 @@ namespace modebank::test {
 namespace {
 
 using nlohmann::json;
-using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
 TEST_F(Check, PrintsAPageAndTheSameNumbersAsJson) {
@@ -53,31 +52,6 @@ TEST_F(Check, ReadsWhatRunWouldRefuseAndSaysWhatAcceptsIt) {
   EXPECT_EQ(run({"--data.disorder", "sort", "--data.missing", "gap"}).status, 0) << "as it said";
 }
 
-/// A binary pseudo-random signal is the most common input for identification.
-TEST_F(Check, ABinaryInputIsNoLimiter) {
-  for (const char* run : {"run_00.csv", "run_01.csv"}) {
-    std::mt19937_64 generator(run[5] == '0' ? 1 : 2);
-    std::normal_distribution<double> noise(0.0, 0.01);
-    std::string text = "time,wz,u\n";
-    double x = 0.0, u = 1.0;
-    for (int k = 0; k < 400; ++k) {
-      if (generator() % 5 == 0) u = -u;
-      text += fmt::format("{:.1f},{:.9g},{:g}\n", 0.1 * k, x + noise(generator), u);
-      x = 0.8 * x + 0.5 * u;
-    }
-    write(run, text);
-  }
-  write("test.ini", "[data]\ninputs = run_*.csv\nstate = wz\ninput = u\n[window]\nlength = 10\n");
-  const json check = check_json(config(), {"--data.root", file(".").string()});
-  std::vector<std::string> of_input;
-  for (const json& finding : check.at("findings"))
-    if (const auto line = finding.get<std::string>(); line.starts_with("u ")) of_input.push_back(line);
-  EXPECT_THAT(of_input,
-              ElementsAre("u is a binary signal: it switches between two levels (range -1 to 1), and the inputs are "
-                          "persistently exciting of order 10 or more in every run"));
-  EXPECT_EQ(check.at("channels")[1].at("saturated"), 0.0);
-}
-
 /// For 60 % of the time the input is zero and the state is constant.
 TEST_F(Check, RestIsNoCoarseMeasurement) {
   for (int run = 0; run < 4; ++run) {
@@ -103,29 +77,6 @@ TEST_F(Check, RestIsNoCoarseMeasurement) {
   const ProgramResult result = run();
   ASSERT_EQ(result.status, 0) << result.err;
   EXPECT_EQ(result.out.find("repeat the one before"), std::string::npos) << result.out;
-}
-
-TEST_F(Check, ExitStatusTellsUsageFromUnusableData) {
-  EXPECT_EQ(modebank({"check"}).status, 2);
-  EXPECT_EQ(modebank({"check", file("nothing.ini").string()}).status, 2);
-  EXPECT_EQ(modebank({"check", config(), "--data.root", file(".").string(), "--data.state", "nothing"}).status, 2);
-  const ProgramResult tiny = modebank({"check", config(), "--data.root", file(".").string(), "--window.length", "500"});
-  EXPECT_EQ(tiny.status, 1);
-  EXPECT_THAT(tiny.err, HasSubstr("window.length is 500"));
-  EXPECT_THAT(tiny.out, HasSubstr("UNUSABLE"));
-}
-
-TEST_F(Check, LagAutoReachesSummaryAndArchive) {
-  const ProgramResult result = run({"--data.lag_s", "auto"});
-  ASSERT_EQ(result.status, 0) << result.err;
-  EXPECT_THAT(modebank({"show", archive()}).out, HasSubstr("log score none"));
-  const ProgramResult shown = modebank({"show", archive(), "lag/runs", "--json"});
-  ASSERT_EQ(shown.status, 0) << shown.err;
-  EXPECT_EQ(json::parse(shown.out).at("value")[0].at("run"), "00");
-  EXPECT_EQ(modebank({"verify", archive()}).status, 0);
-  const ProgramResult bad = run({"--data.lag_s", "automatic"});
-  EXPECT_EQ(bad.status, 2);
-  EXPECT_THAT(bad.err, HasSubstr("a number or auto"));
 }
 
 }  // namespace
