@@ -260,13 +260,15 @@ def identify(program, folder, truth):
         return None
     with h5py.File(folder / "out.h5") as file:
         base, structure, scores = file["baseline"], file["structure"].attrs, file["structure/scores"][:]
-        own = [i for i, name in enumerate(base.attrs["input_names"]) if name.startswith(b"u")]
-        said = {"R": np.diag(np.atleast_2d(base["R"])), "R_error": np.diag(np.atleast_2d(base["R_standard_error"]))}
+        own = [i for i, name in enumerate(file["data"].attrs["input_names"]) if name.startswith(b"u")]
+        said = {"R": np.diag(np.atleast_2d(base["R"]))}
+        errors = base.get("R_standard_error")  # none where the model has no sensor noise
+        said["R_error"] = 0 * said["R"] if errors is None else np.diag(np.atleast_2d(errors))
         for name, key in (("gain", "steady_gain"), ("time", "response_time_s")):
             said[name], said[name + "_error"] = base[key][0][:, own], base[key + "_standard_error"][0][:, own]
-        nats, said["state_lags"] = scores["log_score"] * structure["samples"], structure["state_lags"]
+        nats, single = scores["log_score"] * structure["samples"], scores["linear"] == 1  # modes may take other lags
         true = nats[scores["state_lags"] == truth["state_lags"]]
-        said["lost"] = true.max(initial=-np.inf) - nats[scores["chosen"] == 1].max()
+        said["state_lags"], said["lost"] = scores["state_lags"][single][0], true.max(initial=-np.inf) - nats[single][0]
         said["input_delay"] = np.atleast_1d(structure["input_delay"])[own].tolist()
     return said if own and own[0] == 0 else None
 
