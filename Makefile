@@ -125,7 +125,6 @@ cost: build
 features: build
 	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
 
-
 # Everything that CI runs beside `make test`; .ci/run times each of these.
 CHECKS := test-long format lint shellcheck docs tidy-changed sanitize-short
 .PHONY: list-checks
@@ -177,7 +176,7 @@ docs-examples docs-update: packages-test packages-nightly build
 
 # Common misspellings, and style of the pages' scripts. NODE_PATH is where node finds
 # Debian's modules.
-WORDS_THAT_ARE_RIGHT := fro,ist,lenght,nd,nees,positionof,siz,te,vell
+WORDS_THAT_ARE_RIGHT := lenght,nd,nees,positionof,vell
 lint: packages-check
 	git ls-files '*.[ch]' '*.[ch]pp' '*.py' '*.js' '*.css' '*.sh' '*.cmake' '*CMakeLists.txt' Makefile .ci | xargs codespell -q 3 -L $(WORDS_THAT_ARE_RIGHT)
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
@@ -220,7 +219,6 @@ sanitize: packages-build packages-test
 FUZZ_SECONDS ?= 600
 fuzz: packages-build packages-test
 	tests/fuzz/run $(FUZZ_SECONDS) $(JOBS)
-
 
 # README's picture: a held-out run of the demo.
 picture: build

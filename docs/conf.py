@@ -21,7 +21,7 @@ copyright = author
 
 extensions = ["myst_parser", "sphinx.ext.mathjax", "sphinx.ext.autodoc", "sphinxcontrib.bibtex", "sphinxcontrib.programoutput", "breathe",
               "program", "made"]
-myst_enable_extensions = ["colon_fence", "deflist", "dollarmath"]
+myst_enable_extensions = ["deflist", "dollarmath"]
 myst_heading_anchors = 4
 highlight_language = "none"  # of blocks that name no language
 numfig = True  # equations by chapter of the explanation: (4.2)

@@ -9,8 +9,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "app/cli/log/joined_inputs.hpp"
+#include "app/config/option_text.hpp"
+#include "app/text/structure_text.hpp"
 #include "filter/learn/chain/armax_bank.hpp"
-#include "ident/lag/armax.hpp"
+#include "ident/data/stretch.hpp"
 #include "ident/lag/structure_search.hpp"
 #include "io/import/import.hpp"
 
@@ -21,35 +24,26 @@ constexpr double least_nats_per_state = 6.0;
 constexpr Index most_samples = 20'000;
 
 /// The beginning of the training runs.
-Recording beginning_of(Recording recording) {
+Recording beginning_of(const Recording& recording) {
+  Recording part{recording.states, recording.inputs, {}, recording.quantum};
   Index left = most_samples;
-  std::erase_if(recording.runs, [](const Trajectory& run) { return run.role != Role::train; });
-  for (Trajectory& run : recording.runs) {
-    const Index samples = std::min(left, run.samples());
-    run.time_s.conservativeResize(samples);
-    run.state.conservativeResize(Eigen::NoChange, samples);
-    run.input.conservativeResize(Eigen::NoChange, samples);
-    left -= samples;
-  }
-  std::erase_if(recording.runs, [](const Trajectory& run) { return run.samples() == 0; });
-  return recording;
+  for (const Trajectory& run : recording.runs)
+    if (const Index samples = std::min(left, run.samples()); run.role == Role::train && samples > 0) {
+      part.runs.push_back(stretch(run, 0, samples));
+      left -= samples;
+    }
+  return part;
 }
 
-void remove_last_input(Recording& recording) {
-  recording.inputs.pop_back();
-  for (Trajectory& run : recording.runs) run.input.conservativeResize(run.input.rows() - 1, Eigen::NoChange);
+/// The row of the single linear model that the search chose; null if nothing was searched.
+const StructureScore* searched_row(const Archive& archive) {
+  if (!archive.structure || !archive.recording || !archive.structure->remark.empty()) return nullptr;
+  return of_linear(*archive.structure);
 }
 
-/// The structure of the single linear model that the search chose; empty if nothing was searched.
-std::optional<ArmaxStructure> searched_structure(const Archive& archive) {
-  if (!archive.structure || !archive.recording || !archive.structure->remark.empty()) return {};
-  const std::vector<StructureScore>& scores = archive.structure->scores;
-  const auto linear = std::find_if(scores.begin(), scores.end(), [](const auto& one) { return one.linear; });
-  if (linear == scores.end()) return {};
-  const bool intercept = linear->differences || !archive.baseline || archive.baseline->structure.intercept;
-  const InputDelays delays = archive.structure->input_delay.with_latest(linear->input_delay);
-  return ArmaxStructure{{linear->differences, linear->state_lags, linear->input_lags, linear->noise_lags, intercept},
-                        delays.by_input(archive.recording->input_count())};
+ArmaxStructure searched_structure(const Archive& archive, const StructureScore& row) {
+  return armax_of(row, *archive.structure, archive.recording->input_count(),
+                  row.differences || !archive.baseline || archive.baseline->structure.intercept);
 }
 
 /// A fit of one structure; empty where the runs are too short for it.
@@ -119,7 +113,7 @@ Tried try_last_input(Recording recording, const ArmaxStructure& structure) {
     with.delays.push_back(delay);
     fits.push_back(fitted(recording, with));
   }
-  remove_last_input(recording);
+  remove_input(recording, recording.input_count() - 1);
   const std::optional<ArmaxCandidate> base = fitted(recording, structure);
   Tried best{-INFINITY, 0};
   for (const auto& fit : fits)
@@ -133,13 +127,12 @@ Tried try_last_input(Recording recording, const ArmaxStructure& structure) {
 }  // namespace
 
 std::vector<std::string> delay_doubts(const Archive& archive) {
-  const std::optional<ArmaxStructure> structure = searched_structure(archive);
-  if (!structure || structure->delays.empty()) return {};
+  const StructureScore* const row = searched_row(archive);
+  if (!row || archive.recording->inputs.empty()) return {};
+  const ArmaxStructure structure = searched_structure(archive, *row);
   const Recording recording = beginning_of(*archive.recording);
-  const std::vector<StructureScore>& scores = archive.structure->scores;
-  const auto linear = std::find_if(scores.begin(), scores.end(), [](const auto& one) { return one.linear; });
-  std::vector<std::string> doubts{same_sample_doubt(recording, *structure),
-                                  noise_doubt(recording, *structure, linear->rmse)};
+  std::vector<std::string> doubts{same_sample_doubt(recording, structure),
+                                  noise_doubt(recording, structure, row->rmse)};
   std::erase(doubts, "");
   return doubts;
 }
@@ -147,9 +140,10 @@ std::vector<std::string> delay_doubts(const Archive& archive) {
 std::vector<std::string> left_channel_doubts(const Archive& archive, const Config& config,
                                              std::vector<ChannelLeft> left) {
   constexpr std::size_t most_tried = 8, most_named = 3;
-  const std::optional<ArmaxStructure> structure = searched_structure(archive);
+  const StructureScore* const row = searched_row(archive);
   std::erase_if(left, [](const ChannelLeft& channel) { return channel.points == 0; });
-  if (!structure || left.empty()) return {};
+  if (!row || left.empty()) return {};
+  const ArmaxStructure structure = searched_structure(archive, *row);
   std::stable_sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.points > b.points; });
   std::vector<std::pair<double, std::string>> found;
   for (std::size_t c = 0; c < std::min(most_tried, left.size()); ++c) {
@@ -164,14 +158,14 @@ std::vector<std::string> left_channel_doubts(const Archive& archive, const Confi
     } catch (const std::runtime_error&) {
       continue;  // a channel of another table, or one with missing values
     }
-    if (recording.input_count() != std::ssize(structure->delays) + 1) continue;
+    if (recording.input_count() != std::ssize(structure.delays) + 1) continue;
     const std::vector<std::string> states = names_of(recording.states);
-    if (const auto [gain, moved] = try_last_input(std::move(recording), *structure);
+    if (const auto [gain, moved] = try_last_input(std::move(recording), structure);
         gain >= least_nats_per_state * static_cast<double>(states.size()))
       found.emplace_back(gain, fmt::format("{} also moves {} ({:.0f} nats): data.input = {}; if it is measured beside "
                                            "it, data.state",
                                            left[c].name, states[static_cast<std::size_t>(moved)], gain,
-                                           fmt::join(with.data.input, ", ")));
+                                           format_value(with.data.input)));
   }
   std::stable_sort(found.begin(), found.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
   std::vector<std::string> doubts;

@@ -13,6 +13,7 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/dry_run.hpp"
 #include "app/cli/kept_stages.hpp"
+#include "app/cli/log/joined_inputs.hpp"
 #include "app/cli/log/log_text.hpp"
 #include "app/cli/log/run_log.hpp"
 #include "app/cli/progress_meter.hpp"
@@ -116,6 +117,18 @@ WindowFits identify_into_file(const std::filesystem::path& path, const Archive& 
   return write_archive(path, before, count_windows(recording, inputs.window), produce);
 }
 
+/// Adds doubts about columns and the single linear model. The screen already has the doubt about the level.
+void add_doubts(const Archive& archive, Result& result) {
+  std::vector<std::string> doubts = delay_doubts(archive);
+  if (archive.recording) std::ranges::copy(joined_doubts(*archive.recording), std::back_inserter(doubts));
+  for (const std::string& doubt : doubts) result.text += paragraph("doubt", doubt);
+  if (const std::string level = level_doubt(archive); !level.empty()) {
+    if (!has_first_screen(archive)) result.text += paragraph("doubt", level);
+    doubts.push_back(level);
+  }
+  result.members["doubts"] = doubts;
+}
+
 /// If there are too many windows for memory, writes them to the file during the fit.
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
@@ -127,7 +140,10 @@ Result identify_many(const Config& config, const Chain& chain, const Archive& da
   log.warn_of_windows(counts);
   const std::vector<std::string> labels =
       parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs));
-  return {data_text(*data.recording) + windows_text(common, counts, labels) + archive_line(config), written(config)};
+  Result result{data_text(*data.recording) + windows_text(common, counts, labels), written(config)};
+  add_doubts(data, result);
+  result.text += archive_line(config);
+  return result;
 }
 
 /// Throws for options of learning, because they have no effect on a stored bank.
@@ -145,17 +161,6 @@ Stage last_stage(const std::string& until) {
   return until == "mixture" ? Stage::mixture : until == "bank" ? Stage::bank : Stage::bank_scores;
 }
 
-/// Adds what the single linear model leaves in doubt. The screen already has the doubt about the level.
-void add_doubts(const Archive& archive, Result& result) {
-  std::vector<std::string> doubts = delay_doubts(archive);
-  for (const std::string& doubt : doubts) result.text += paragraph("doubt", doubt);
-  if (const std::string level = level_doubt(archive); !level.empty()) {
-    if (!has_first_screen(archive)) result.text += paragraph("doubt", level);
-    doubts.push_back(level);
-  }
-  result.members["doubts"] = doubts;
-}
-
 /// Runs the stages and writes the archive.
 Result execute(const CommandLine& line, const Config& config, StageSource& source) {
   const Stage last = last_stage(line.until);
@@ -168,13 +173,13 @@ Result execute(const CommandLine& line, const Config& config, StageSource& sourc
     if (streams_windows(*data.recording, chain.inputs().windows)) return identify_many(config, chain, data, log);
   }
   const Archive& archive = run_and_write(chain, options, last, config.archive.bank, execution, config.archive.output);
+  const Settings settings = resolved_values(archive.config);
   if (!has_first_screen(archive)) {
-    Result result{summary_text(archive) + free_run_text(archive), written(config)};
+    Result result{summary_text(archive, time_unit(settings)) + free_run_text(archive), written(config)};
     add_doubts(archive, result);
     result.text += archive_line(config);
     return result;
   }
-  const Settings settings = resolved_values(archive.config);
   Result result{first_screen(archive, settings, config.archive.output, standard_output().width, line.program),
                 written(config)};
   add_doubts(archive, result);

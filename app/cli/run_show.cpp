@@ -29,7 +29,8 @@ void print_overview(const CommandLine& line) {
   const Archive archive = read_archive(file, Evaluations::in_file);
   if (has_first_screen(archive))
     fmt::print("{}\n", first_screen(archive, resolved_values(archive.config), line.files[0], width, line.program));
-  fmt::print("{}\n{}", wrapped(provenance_text(archive), width), summary_text(archive, width));
+  fmt::print("{}\n{}", wrapped(provenance_text(archive), width),
+             summary_text(archive, time_unit(resolved_values(archive.config)), width));
   fmt::print("{}", wrapped(free_run_text(archive, width), width));
   if (archive.mixture) fmt::print("\ncandidates\n{}", candidates_text(*archive.mixture, width));
   if (archive.bank) fmt::print("\nmodes\n{}", modes_text(archive, full_form, width));

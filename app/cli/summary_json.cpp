@@ -29,8 +29,6 @@ json forecasts_json(const std::vector<NamedForecast>& forecasts) {
                     {"other", forecast.other},
                     {"gain", json_number(forecast.gain)},
                     {"gain_error", json_number(forecast.error)},
-                    {"point_filter", forecast.point_filter},
-                    {"point_gain", json_number(forecast.point_gain)},
                     {"c_filter", forecast.c_filter.empty() ? forecast.filter : forecast.c_filter},
                     {"c_loss", forecast.c_filter.empty() ? json(0.0) : json_number(forecast.c_loss)}});
   return list;

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "app/config/chain_options.hpp"
-#include "app/config/study_config.hpp"
 #include "ident/simulate/simulate.hpp"
+#include "modebank/base/names.hpp"
 
 namespace modebank::app {
 
@@ -65,6 +65,21 @@ struct StructureConfig {
   bool automatic_intercept = true;                                     ///< window.intercept = auto
 };
 
+/// The steps of `modebank study`. `all` does every step.
+enum class StudyStage { all, plan, run, merge, status, submit };
+
+/// The [study] section. app/study/space/study_space.hpp parses `vary` and `together`.
+struct StudyConfig {
+  std::vector<std::string> vary;      ///< "KEY = v1 | v2" for each varied key
+  std::vector<std::string> together;  ///< "KEY, KEY": keys whose values change together
+  std::int64_t sample = 0;            ///< number of sampled points; 0: the full grid
+  std::int64_t repeats = 1;
+  std::string output;  ///< folder of the study; empty: the configuration file's name with .study, in the current folder
+  int jobs = 0;        ///< number of processes; 0: one per core
+  StudyStage stage = StudyStage::all;
+  std::string slurm_options;  ///< options for sbatch, separated by spaces
+};
+
 /// Options of every stage from one configuration file. The option table lists their keys.
 struct Config {
   DataOptions data;
@@ -108,4 +123,9 @@ void validate(const Config& config);
 template <>
 struct modebank::EnumNames<modebank::app::TrackedFilter> {
   static constexpr Names<7> values{"bank", "baseline", "noise_only", "one_motion", "drifting", "combined", "nonlinear"};
+};
+
+template <>
+struct modebank::EnumNames<modebank::app::StudyStage> {
+  static constexpr Names<6> values{"all", "plan", "run", "merge", "status", "submit"};
 };

@@ -14,11 +14,8 @@
 namespace modebank {
 namespace {
 
+using app::counted;
 using app::likelihood_words;
-
-std::string counted(Eigen::Index count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 /// Text such as "6 held-out runs", or "held-out stretch" for one stretch of a drive.
 std::string judged(const Finding& finding) {

@@ -100,7 +100,7 @@ std::string first_screen(const Archive& archive, const Settings& settings, const
       part("structure", screen.structure, 4) + point + part("finding", screen.finding, finding_lines);
   const std::string after =
       part("band", screen.band, 3) + part("mean", screen.mean, screen.free_run_start == 0 ? 3 : 4) +
-      part("warning", screen.warning, screen_lines) + part("use", screen.use, 3) + file_line(file, columns);
+      part("warning", screen.warning, screen_lines) + part("use", screen.use, screen_lines) + file_line(file, columns);
   const int mode_lines = std::max(screen_lines - line_count(before) - line_count(after), least_mode_lines);
   return before + modes_section(archive, screen, mode_lines, columns, time_unit(settings)) + after;
 }

@@ -16,11 +16,10 @@
 namespace modebank::app {
 namespace {
 
-/// Scores of one filter at one horizon.
+/// Score of one filter at one horizon.
 struct Reached {
   std::string filter;
   double log_score = 0.0;
-  Eigen::VectorXd rmse;
 };
 
 template <class Row>
@@ -36,7 +35,7 @@ void add(const std::vector<Row>& rows, Role role, Index steps, std::vector<Reach
     if constexpr (requires { row.role; })
       if (row.role != role || row.run != "*") continue;
     if (std::none_of(reached.begin(), reached.end(), [&](const Reached& r) { return r.filter == row.filter; }))
-      reached.push_back({row.filter, row.log_score, row.rmse});
+      reached.push_back({row.filter, row.log_score});
   }
 }
 
@@ -55,18 +54,6 @@ std::vector<Reached> reached_in_training(const Archive& archive, Index steps) {
   return reached;
 }
 
-/// Excess of the filter's error over the smallest error of all filters, relative to that error. It is the largest over
-/// all states.
-double excess_error(const Reached& one, const std::vector<Reached>& all) {
-  Eigen::VectorXd least = one.rmse;
-  for (const Reached& other : all)
-    if (other.rmse.size() == least.size()) least = least.cwiseMin(other.rmse);
-  double largest = 0.0;
-  for (Index i = 0; i < least.size(); ++i)
-    if (least(i) > 0.0) largest = std::fmax(largest, one.rmse(i) / least(i) - 1.0);
-  return largest;
-}
-
 /// The simplest filter that loses less than 0.02 nats against the best, as in the finding. Null if there are none. Only
 /// filters for which `may` returns true are compared.
 template <class May>
@@ -77,20 +64,6 @@ const Reached* simplest_good(const std::vector<Reached>& all, May may) {
   for (const Reached& one : all)
     if (may(one.filter) && one.log_score > best - negligible_gain) return &one;
   return nullptr;
-}
-
-constexpr double worth_a_name = 0.02;  // smallest saved fraction of the error for which a filter is named
-
-/// Names the filter with the smallest error, if its error is smaller than the chosen filter's error by this fraction.
-void name_point(const std::vector<Reached>& all, const Reached& chosen, NamedForecast& forecast) {
-  forecast.point_filter = chosen.filter;
-  const Reached* least = &chosen;
-  for (const Reached& one : all)
-    if (excess_error(one, all) < excess_error(*least, all)) least = &one;
-  const double saved = 1.0 - 1.0 / (1.0 + excess_error(chosen, {chosen, *least}));
-  if (saved <= worth_a_name) return;
-  forecast.point_filter = least->filter;
-  forecast.point_gain = saved;
 }
 
 /// Mean log score and number of samples of each judged run.
@@ -159,7 +132,6 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
   NamedForecast forecast;
   forecast.steps = steps;
   forecast.filter = chosen.filter;
-  name_point(all, chosen, forecast);
   if (chosen.filter != "bank")
     forecast.other = "bank";
   else if (const Reached* next = simplest_good(all, [](const std::string& name) { return name != "bank"; }))
@@ -207,18 +179,6 @@ std::string worth(const Archive& archive, const NamedForecast& forecast) {
 
 std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", steps, steps == 1 ? "" : "s"); }
 
-/// Text such as "; least error 10 steps ahead: `baseline` (4 % less)".
-std::string least_errors(const std::vector<NamedForecast>& forecasts) {
-  constexpr double worth_a_line = 0.05;  // smallest saved fraction of an error that is worth a line; on the screen,
-                                         // this line takes the place of a mode's line
-  std::string text;
-  for (const NamedForecast& forecast : forecasts)
-    if (forecast.point_gain > worth_a_line)
-      text += fmt::format("{} {}: `{}` ({:.0f} % less)", text.empty() ? "; least error" : ",",
-                          steps_words(forecast.steps), forecast.point_filter, 100.0 * forecast.point_gain);
-  return text;
-}
-
 }  // namespace
 
 std::vector<NamedForecast> named_forecasts(const Archive& archive) {
@@ -240,7 +200,7 @@ std::string use_words(const Archive& archive) {
     text += fmt::format("; {}{}: `--track.filter {}`{}", &forecast == &forecasts.front() ? "to predict " : "",
                         steps_words(forecast.steps), forecast.filter, worth(archive, forecast));
   }
-  return text + least_errors(forecasts);
+  return text;
 }
 
 }  // namespace modebank::app

@@ -17,9 +17,6 @@ struct NamedForecast {
   double error = not_a_number;   ///< standard error over the runs; NaN for fewer than two runs
   std::string c_filter;          ///< the best filter that can be exported to C; empty if this is `filter` itself
   double c_loss = not_a_number;  ///< log score that c_filter loses against `filter` [nats/sample]
-  std::string point_filter;      ///< the filter with the smallest error, if the error of `filter` is over 2 % larger;
-                                 ///< else `filter`
-  double point_gain = 0.0;       ///< error that point_filter saves on training runs, relative to the error of `filter`
 };
 
 /// One entry per scored horizon, horizon 1 first; empty without scores.
@@ -28,7 +25,6 @@ struct NamedForecast {
 /// - Of the filters with a log score less than 0.02 nats below the best, the simplest is named: a competitor in their
 ///   order, the bank, then the combination. Nothing is named against the finding's simpler model (or best competitor)
 ///   that is as good on the judged runs.
-/// - `point_filter` is the best choice if only the error matters.
 std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
 /// One sentence on the finding and the named filters, such as: "to understand the motion: the 3 modes; to predict 1

@@ -49,6 +49,10 @@ std::string with_degrees(double value, const std::string& unit) {
   return fmt::format("{} ({:.3g} deg{})", text, 180.0 / std::numbers::pi * value, unit.substr(3));
 }
 
+std::string counted(std::ptrdiff_t count, const char* what) {
+  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+}
+
 std::string duration_text(double seconds) {
   if (seconds < 120.0) return fmt::format("{:.3g} s", seconds);
   if (seconds < 7200.0) return fmt::format("{:.3g} min", seconds / 60.0);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <map>
 #include <string>
 
@@ -28,6 +29,9 @@ std::string size_list(const Values& values, int decimals) {
   for (const double value : values) text += (text.empty() ? "" : " ") + size_text(value, decimals);
   return text;
 }
+
+/// A number of things: "1 state lag", "2 state lags".
+std::string counted(std::ptrdiff_t count, const char* what);
 
 /// A duration such as "3 s", "4.2 min" or "1.5 h".
 std::string duration_text(double seconds);

@@ -16,25 +16,6 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-/// Statistics of the finite values of each row.
-struct Spread {
-  VectorXd mean, squares, low, high, count;  ///< squares: sum of those of the distances to the mean
-
-  explicit Spread(Index rows)
-      : mean(VectorXd::Zero(rows)), squares(mean), low(VectorXd::Constant(rows, INFINITY)), high(-low), count(mean) {}
-  void add(const MatrixXd& values) {
-    for (Index k = 0; k < values.cols(); ++k)
-      for (Index i = 0; i < values.rows(); ++i) {
-        const double value = values(i, k), from = value - mean(i);
-        if (!std::isfinite(value)) continue;
-        mean(i) += from / ++count(i);
-        squares(i) += from * (value - mean(i));
-        low(i) = std::min(low(i), value);
-        high(i) = std::max(high(i), value);
-      }
-  }
-};
-
 const Channel& column(const Recording& recording, Index c) {
   const Index n = recording.state_count();
   return c < n ? recording.states[static_cast<std::size_t>(c)] : recording.inputs[static_cast<std::size_t>(c - n)];
@@ -83,7 +64,7 @@ VectorXd level_deviation(const Bank& single, const Recording& recording) {
     level.add((run.states() - response_to(single, run))
                   .rightCols(run.samples() - static_cast<Index>(std::min(settled, half))));
   }
-  return (level.squares.cwiseQuotient(level.count.cwiseMax(1.0)) - single.R.diagonal()).cwiseMax(0.0).cwiseSqrt();
+  return (level.deviation().cwiseAbs2() - single.R.diagonal()).cwiseMax(0.0).cwiseSqrt();
 }
 
 }  // namespace
@@ -96,9 +77,7 @@ std::string operating_words(const Bank& single, const Recording& recording) {
     if (run.role == Role::train) all.add((MatrixXd(n + m, run.samples()) << run.states(), run.inputs()).finished());
   if (n + m > most_columns || !(all.count.minCoeff() > 0.0)) return "";
   std::vector<std::string> means, at_zero;
-  for (Index c = 0; c < n + m; ++c)
-    means.push_back(
-        named(c < n ? recording.states[std::size_t(c)] : recording.inputs[std::size_t(c - n)], all.mean(c)));
+  for (Index c = 0; c < n + m; ++c) means.push_back(named(column(recording, c), all.mean(c)));
   std::string text = fmt::format("means: {}", fmt::join(means, ", "));
   const auto& [value, error, never_settles] = single.modes.front().response;
   const bool settles = value.radius + (std::isfinite(error.radius) ? 2.0 * error.radius : 0.0) < 1.0;

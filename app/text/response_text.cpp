@@ -9,30 +9,12 @@
 #include <vector>
 
 #include "app/text/number_text.hpp"
+#include "app/text/operating_point.hpp"
 
 namespace modebank::app {
 namespace {
 
 using Eigen::Index;
-
-/// Standard deviation of each input over the training runs.
-Eigen::VectorXd deviation_of_inputs(const Recording& recording) {
-  const Index m = recording.input_count();
-  Eigen::VectorXd sum = Eigen::VectorXd::Zero(m), squares = sum;
-  double samples = 0.0;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != Role::train) continue;
-    for (Index k = 0; k < run.samples(); ++k) {
-      const Eigen::VectorXd u = run.inputs().col(k);
-      if (!u.allFinite()) continue;
-      samples += 1.0;
-      const Eigen::VectorXd from = u - sum;
-      sum += from / samples;
-      squares += from.cwiseProduct(u - sum);
-    }
-  }
-  return (squares / std::max(1.0, samples)).cwiseSqrt();
-}
 
 struct Pair {
   Index state = 0, input = 0;
@@ -42,7 +24,10 @@ struct Pair {
 /// All pairs, those that move most first.
 std::vector<Pair> pairs_of(const Bank& single, const Recording& recording) {
   const Eigen::MatrixXd& gain = single.modes.front().response.value.gain;
-  const Eigen::VectorXd deviation = deviation_of_inputs(recording);
+  Spread inputs(recording.input_count());
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train) inputs.add(run.inputs());
+  const Eigen::VectorXd deviation = inputs.deviation();
   std::vector<Pair> pairs;
   for (Index i = 0; i < gain.rows(); ++i)
     for (Index j = 0; j < gain.cols(); ++j)

@@ -11,6 +11,6 @@ namespace modebank::app {
 /// within 5 % after 181 s". Where the steady value is uncertain by more than a third, or a pole lies within two errors
 /// of 1, the words say that it integrates or settles slower than some time. One text per pair of state and input,
 /// those that move most first (gain times the input's standard deviation). Empty without a response.
-std::vector<std::string> response_words(const Bank& single, const Recording& recording, const std::string& unit = "s");
+std::vector<std::string> response_words(const Bank& single, const Recording& recording, const std::string& unit);
 
 }  // namespace modebank::app

@@ -8,14 +8,11 @@
 #include <utility>
 #include <vector>
 
+#include "app/text/number_text.hpp"
 #include "app/text/text_table.hpp"
 
 namespace modebank::app {
 namespace {
-
-std::string counted(std::ptrdiff_t count, const char* what) {
-  return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
-}
 
 std::string rmse_cell(const StructureScore& score) {
   std::vector<std::string> values;
@@ -25,11 +22,6 @@ std::string rmse_cell(const StructureScore& score) {
 
 std::string left_out_words(const FoundStructure& found) {
   return fmt::format("{} left-out training {}", found.parts, found.by_runs ? "runs" : "stretches");
-}
-
-const StructureScore* of_linear(const FoundStructure& found) {
-  const auto one = std::find_if(found.scores.begin(), found.scores.end(), [](const auto& s) { return s.linear; });
-  return one == found.scores.end() ? nullptr : &*one;
 }
 
 /// The noise lags of an ARMAX, and whether it is one of differences; empty for an ARX.
@@ -83,6 +75,11 @@ std::string table_text(const FoundStructure& found, bool acted_on, int width) {
 
 }  // namespace
 
+const StructureScore* of_linear(const FoundStructure& found) {
+  const auto one = std::ranges::find_if(found.scores, &StructureScore::linear);
+  return one == found.scores.end() ? nullptr : &*one;
+}
+
 std::string taken_by(const StructureScore& s) {
   std::vector<std::string> stages;
   for (const auto& [taken, stage] : {std::pair{s.chosen, "bank"}, std::pair{s.one_motion, "one_motion"},
@@ -92,16 +89,16 @@ std::string taken_by(const StructureScore& s) {
 }
 
 std::string structure_words(const FoundStructure& found, bool acted_on) {
-  return lag_words(found.state_lags, found.input_lags, found.input_delay, acted_on);
+  return lag_words(found.state_lags, found.input_lags, found.delays_of_modes(), acted_on);
 }
 
 std::string structure_sentence(const FoundStructure& found, bool acted_on) {
   std::string text = "the modes take " + structure_words(found, acted_on);
   if (const StructureScore* linear = of_linear(found)) {
-    const std::string lags = linear->chosen ? "the same"
-                                            : lag_words(linear->state_lags, linear->input_lags,
-                                                        found.input_delay.with_latest(linear->input_delay), acted_on) +
-                                                  noise_words(*linear);
+    const std::string lags =
+        linear->chosen ? "the same"
+                       : lag_words(linear->state_lags, linear->input_lags, found.delays_of(*linear), acted_on) +
+                             noise_words(*linear);
     text += fmt::format("; a single linear model takes {} (RMSE {} on {})", lags, rmse_cell(*linear),
                         left_out_words(found));
   }

@@ -9,6 +9,9 @@ namespace modebank::app {
 /// Whether the archive's data have inputs. True if the archive has no data.
 inline bool acted_on(const Archive& archive) { return !archive.recording || !archive.recording->inputs.empty(); }
 
+/// The row of the single linear models; null if there is none.
+const StructureScore* of_linear(const FoundStructure& found);
+
 /// Text such as "4 state lags, 1 input lag, delay 1 sample". Without inputs, it has only the state lags.
 std::string structure_words(const FoundStructure& found, bool acted_on);
 

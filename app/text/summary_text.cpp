@@ -10,7 +10,6 @@
 #include "app/text/judged_runs.hpp"
 #include "app/text/lag_text.hpp"
 #include "app/text/mode_words.hpp"
-#include "app/text/number_text.hpp"
 #include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/summary_tables.hpp"
@@ -140,10 +139,10 @@ std::string horizon_text(const Archive& archive) {
 }
 
 /// The responses of all states to all inputs, a line each.
-std::string responses_text(const Archive& archive) {
+std::string responses_text(const Archive& archive, const std::string& unit) {
   if (!archive.baseline || !archive.recording) return "";
   std::string text;
-  for (const std::string& words : response_words(*archive.baseline, *archive.recording))
+  for (const std::string& words : response_words(*archive.baseline, *archive.recording, unit))
     text += "          " + words + "\n";
   return text;
 }
@@ -162,12 +161,12 @@ std::string data_text(const Recording& recording) {
                      recording.transitions(Role::test), recording.median_period_s());
 }
 
-std::string summary_text(const Archive& archive, int width) {
+std::string summary_text(const Archive& archive, const std::string& unit, int width) {
   std::string text;
   if (archive.recording) text += data_text(*archive.recording);
   if (archive.lag) text += lag_text(*archive.lag);
   if (archive.structure) text += structure_text(*archive.structure, acted_on(archive), width);
-  text += responses_text(archive);
+  text += responses_text(archive, unit);
   if (archive.windows) {
     WindowCounts counts;
     counts.add(*archive.windows);

@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "app/text/number_text.hpp"
 #include "app/text/warnings.hpp"
 #include "io/archive/archive.hpp"
 
@@ -12,7 +13,7 @@ std::string data_text(const Recording& recording);
 
 /// The summary of an archive for people: data, windows, mixture, bank, scores and the bank's gains. Lines longer than
 /// `width` columns are broken. 0 means no limit.
-std::string summary_text(const Archive& archive, int width = 0);
+std::string summary_text(const Archive& archive, const std::string& unit, int width = 0);
 
 /// The archive's provenance as text.
 std::string provenance_text(const Archive& archive);

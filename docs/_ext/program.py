@@ -135,15 +135,6 @@ def headers_page():
 PAGES = {"archive": archive_layout.page, "headers": headers_page, "keys": keys_page, "commands": commands_page, "terms": terms_page}
 
 
-def list_others(app, name, source):
-    """The line * of a section's table of contents stands for the pages that it does not name; there may be none."""
-    page = pathlib.Path(app.env.doc2path(name))
-    if page.name == "index.md" and page.parent != pathlib.Path(app.srcdir):
-        listed = source[0].splitlines()
-        others = sorted(other.stem for other in page.parent.glob("*.md") if other.stem not in [*listed, "index"])
-        source[0] = re.sub(r"^\*$", "\n".join(others), source[0], flags=re.M)
-
-
 def as_it_stands(app, what, name, thing, options, lines):
     """Escapes docstrings, which are plain text, for reStructuredText."""
     lines[:] = [re.sub(r"([*`|\\])", r"\\\1", line) for line in lines]
@@ -166,7 +157,6 @@ def name_of(env, signature, node):
 def setup(app):
     app.add_object_type("confval", "confval", objname="key", indextemplate="pair: %s; key")
     app.add_object_type("command", "command", objname="command", indextemplate="pair: %s; command", parse_node=name_of)
-    app.connect("source-read", list_others)
     app.connect("source-read", fill_in)
     app.connect("autodoc-process-docstring", as_it_stands)
     return {"parallel_read_safe": True}

@@ -108,7 +108,6 @@ void assign(const FilterEstimate& source, Estimate& target) {
   assign(source.mode_probability, target.mode_probability);
   target.nis = source.nis;
   target.log_density = source.log_density;
-  target.spread_share = source.spread_share;
   target.steps = source.steps;
 }
 

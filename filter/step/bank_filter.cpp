@@ -74,7 +74,7 @@ struct BankFilter::Parts : FilterShell {
 
   void step(const Vector& measurement) {
     stepper->advance(feed.inputs(), feed.steps());
-    estimate.spread_share = stepper->combine(estimate.prediction, estimate.innovation_covariance);
+    stepper->combine(estimate.prediction, estimate.innovation_covariance);
     estimate.mode_probability_predicted = stepper->predicted_probability();
     estimate.steps = feed.steps();
     estimate.log_density = stepper->update(measurement);

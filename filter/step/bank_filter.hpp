@@ -24,8 +24,6 @@ struct FilterEstimate {
   Eigen::VectorXd mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                            ///< normalised innovation squared of the available signals
   double log_density = 0.0;                    ///< nats
-  double spread_share = 0.0;                   ///< share of the trace of innovation_covariance that comes from
-                                               ///< differences between the modes
   Eigen::Index steps = 0;  ///< number of model steps from the previous sample; 0 if the filter (re)started here
 };
 

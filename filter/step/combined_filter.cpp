@@ -87,14 +87,12 @@ void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed
     for (std::size_t i = 0; i < share.size(); ++i)
       if (share[i] > 0.0) add(share[i], *said_[i]);
   };
-  double own = 0.0;
   each([&](double weight, const FilterEstimate& said) {
     mixed.prediction += weight * said.prediction.head(n);
     mixed.innovation += weight * said.innovation;
     mixed.state += weight * said.state.head(n);
     mixed.pit += weight * said.pit;
     mixed.pit_width += weight * said.pit_width;
-    own += weight * said.innovation_covariance.trace();
   });
   each([&](double weight, const FilterEstimate& said) {
     const Eigen::VectorXd apart = (said.innovation - mixed.innovation)
@@ -105,8 +103,6 @@ void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed
     small::add_about_mean(mixed.covariance, weight, said.covariance.topLeftCorner(n, n),
                           said.state.head(n) - mixed.state);
   });
-  const double together = mixed.innovation_covariance.trace();
-  mixed.spread_share = together > 0.0 ? 1.0 - own / together : 0.0;
   mixed.nis = normalised_square(mixed.innovation, mixed.innovation_covariance);
 }
 

@@ -18,8 +18,7 @@ Bank combined_frame(const Bank& bank);
 /// Combines several filters of the same measurements into one filter. Predictions are weighted by past success within
 /// the run. Prediction, state and covariances are those of the mixture, for the measured states. With one signal the
 /// transform is that of the mixture. With several signals it is mixed by the joint weights, which is exact for the
-/// first signal. spread_share is the share of the trace of innovation_covariance that comes from differences between
-/// the filters. Modes are those of the first filter.
+/// first signal. Modes are those of the first filter.
 class CombinedFilter final : public AnyFilter {
  public:
   /// `start`: weights at the start and after every gap.

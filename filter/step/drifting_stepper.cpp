@@ -36,13 +36,12 @@ double DriftingStepper::update(const Vector& y) {
   return log_density;
 }
 
-double DriftingStepper::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
+void DriftingStepper::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
   const Index n = quantum_.size(), lagged = state.size() - n;
   state.head(n) = recursion_.prediction();
   state.tail(lagged) = recursion_.z().head(lagged);
   innovation_covariance.setZero();
   innovation_covariance.diagonal() = recursion_.variance();
-  return 0.0;
 }
 
 void DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {

@@ -21,7 +21,7 @@ class DriftingStepper final : public Stepper {
   void skip(const Vector& v) override;
   double update(const Vector& y) override;
 
-  double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
+  void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
   void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override;
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return mode_probability(); }

@@ -24,7 +24,6 @@ void FilterShell::restart() {
 void FilterShell::clear_prediction() {
   estimate.prediction.setConstant(not_a_number);
   estimate.innovation_covariance.setConstant(not_a_number);
-  estimate.spread_share = not_a_number;
   estimate.steps = 0;
   clear_scores();
 }

@@ -29,8 +29,8 @@ class EquationStepper final : public Stepper {
   }
   double update(const Vector& y) override { return modebank::update(model_, y, step_, state_); }
 
-  double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
-    return modebank::combine(model_, step_, state, innovation_covariance);
+  void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
+    modebank::combine(model_, step_, state, innovation_covariance);
   }
   void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override {
     if (model_.quantised) return interval_transform(model_, y, step_, weights_, pit, width);

@@ -40,9 +40,8 @@ class Stepper {
     predict(v);
   }
 
-  /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`. Returns the share of the trace of S that
-  /// comes from differences between the modes.
-  virtual double combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
+  /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`.
+  virtual void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
   /// Probability integral transform of y (predicted_mixture.hpp), n_y. Call after `update` with the same y. `width`:
   /// width of the interval whose middle is `pit`; unchanged if no signal is quantised.
   virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;

@@ -17,4 +17,12 @@ bool is_covariance(const Eigen::MatrixXd& M) {
   return Cholesky(correlation + rounding * Eigen::MatrixXd::Identity(M.rows(), M.cols())).definite();
 }
 
+Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& M) {
+  const Eigen::VectorXd sd = M.diagonal().cwiseSqrt();  // scaled first, because parameters have different units
+  const Eigen::VectorXd inverse = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
+  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * M * inverse.asDiagonal());
+  const Eigen::Index rank = (axes.values.array() > 0.0).count();  // values increase, so positive values come last
+  return sd.asDiagonal() * axes.vectors.rightCols(rank) * axes.values.tail(rank).cwiseSqrt().asDiagonal();
+}
+
 }  // namespace modebank

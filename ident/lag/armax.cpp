@@ -1,9 +1,10 @@
 #include "ident/lag/armax.hpp"
 
-#include <Eigen/QR>
 #include <algorithm>
 #include <array>
 #include <cmath>
+
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 namespace {
@@ -41,7 +42,7 @@ VectorXd nonnegative(const MatrixXd& A, const VectorXd& b) {
     if (A.cols() == 0 || !(gradient.maxCoeff(&best) > tolerance)) break;
     used.push_back(best);
     while (!used.empty()) {
-      const VectorXd z = A(Eigen::all, used).colPivHouseholderQr().solve(b);
+      const VectorXd z = solve_least_squares(A(Eigen::all, used), b);
       double step = 1.0;
       for (std::size_t i = 0; i < used.size(); ++i)
         if (const double at = x(used[i]); z(static_cast<Index>(i)) <= 0.0)
@@ -109,11 +110,12 @@ ArmaxFit in_levels(const ArmaxFit& fit) {
   const Index n = fit.theta.rows(), na = fit.order.state_lags, nb = fit.order.input_lags, m = std::ssize(fit.delays);
   ArmaxFit levels = fit;
   levels.order.differences = false;
+  levels.order.intercept = false;
   levels.order.state_lags = na + 1;
   if (m > 0) levels.order.input_lags = nb + 1;
   const Index noise = n * fit.order.noise_lags, from = n * (na + 1), q = fit.theta.cols() + noise;
   // (1 - q^-1) A(q), (1 - q^-1) B(q): each row of [theta C] times M, plus an identity.
-  MatrixXd M = MatrixXd::Zero(q, from + m * (nb + 1) + 1 + noise);
+  MatrixXd M = MatrixXd::Zero(q, from + m * (nb + 1) + noise);
   M.topLeftCorner(n * na, n * na).setIdentity();
   M.block(0, n, n * na, n * na) -= MatrixXd::Identity(n * na, n * na);
   for (Index i = 0; i < m; ++i) {

@@ -76,7 +76,7 @@ struct ArmaxNoise {
 /// R and Q by non-negative least squares on the autocovariances of C(q) e = w + A(q) v. A stated R is held.
 ArmaxNoise noises(const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R = std::nullopt);
 
-/// The same model in levels: differences get a pole at 1, one more lag and a constant of zero.
+/// The same model in levels: differences get a pole at 1, one more lag and no constant.
 ArmaxFit in_levels(const ArmaxFit& fit);
 
 }  // namespace modebank

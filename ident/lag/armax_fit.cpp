@@ -71,7 +71,7 @@ struct Weighted {
 /// Weights are one unless a standard deviation exceeds the scale by the median by more than a fifth: rounding and
 /// Gaussian tails must not cost efficiency.
 Weighted huber(const MatrixXd& errors) {
-  constexpr double k = 1.345, most_ratio = 1.2;
+  constexpr double k = huber_tuning, most_ratio = 1.2;
   const Index n = errors.rows();
   Weighted result{VectorXd::Ones(errors.cols()), 1.0, {}};
   result.S = mean_product(errors, result.weight);

@@ -153,8 +153,6 @@ Identifiability identifiable(const Recording& recording, const VectorXd& quanta)
   Identifiability found;
   for (Index c = 0; c < columns; ++c)
     if (!(high(c) - low(c) > 1e-9 * size(c))) found.resting.push_back(c);
-  found.no_input_moves =
-      columns > n && std::ranges::count_if(found.resting, [&](Index c) { return c >= n; }) == columns - n;
   Rows rows{n, columns, std::min(most_lags, samples / (fewest_rows_per_column * columns)),
             quanta.cwiseMax(1e-12 * size).cwiseMax(1e-300) / std::sqrt(12.0)};
   if (rows.lags < 2) return found;

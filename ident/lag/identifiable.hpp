@@ -24,7 +24,6 @@ struct ColumnRelation {
 struct Identifiability {
   std::vector<ColumnRelation> relations;
   std::vector<Index> resting;  ///< columns that never move
-  bool no_input_moves = false;
 };
 Identifiability identifiable(const Recording& recording, const Eigen::VectorXd& quanta);
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <limits>
@@ -25,6 +26,13 @@ struct SearchedLags {
   std::ptrdiff_t most_samples = 0;  ///< largest number of samples that a run may need before its first prediction; 0
                                     ///< means no limit
   bool any() const { return state || input || delay; }
+};
+
+/// Lags of a stage, with the delay of each input.
+struct StageLags {
+  std::ptrdiff_t state_lags = 1;
+  std::ptrdiff_t input_lags = 1;
+  InputDelays input_delay = 1;
 };
 
 /// Scores of one structure (lags and delay) on training runs that were left out.
@@ -52,20 +60,28 @@ struct StructureScore {
   bool differences = false;       ///< whether the model is one of differences between samples
 };
 
-/// The lags and delay of windows, mixture and bank, the lags of other stages (in the table), and the evidence for the
+/// The lags of windows, mixture and bank, the lags of other stages (in the table), the delays, and the evidence for the
 /// choice.
 struct FoundStructure {
   std::ptrdiff_t state_lags = 1;
   std::ptrdiff_t input_lags = 1;
-  InputDelays input_delay = 1;
+  InputDelays input_delay = 1;              ///< of the single linear model
   std::ptrdiff_t samples = 0;               ///< number of samples that every structure predicted
   std::ptrdiff_t parts = 0;                 ///< number of runs or stretches over which standard errors are computed
   bool by_runs = false;                     ///< true: the parts are whole runs; false: stretches of runs
-  std::ptrdiff_t structures = 0;            ///< number of structures compared by least squares
+  std::ptrdiff_t structures = 0;            ///< number of structures compared
   std::ptrdiff_t noise_lags = 0;            ///< of the single linear model; 0 for an ARX
   bool differences = false;                 ///< whether that model is one of differences
   std::string remark = {};                  ///< reason why the search did not use its full range; empty if it did
   std::vector<StructureScore> scores = {};  ///< scores of the finalists, in decreasing order
+
+  /// Those of the single linear model if its latest is that of the row; otherwise that of the row for all inputs.
+  InputDelays delays_of(const StructureScore& row) const { return input_delay.with_latest(row.input_delay); }
+  /// The delays of windows, mixture and bank.
+  InputDelays delays_of_modes() const {
+    const auto row = std::ranges::find_if(scores, &StructureScore::chosen);
+    return row == scores.end() ? input_delay : delays_of(*row);
+  }
 };
 
 }  // namespace modebank

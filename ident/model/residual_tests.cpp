@@ -73,22 +73,7 @@ std::vector<Centred> centred_rows(const MatrixXd& rows) {
   return result;
 }
 
-double share(Index outside, Index of) {
-  return of > 0 ? static_cast<double>(outside) / static_cast<double>(of) : not_a_number;
-}
-
 }  // namespace
-
-double ResidualTests::autocorrelation_outside() const {
-  const auto lags = autocorrelation.rightCols(std::max<Index>(autocorrelation.cols() - 1, 0)).array();
-  return share((lags.abs() > autocorrelation_band).count(), (!lags.isNaN()).count());
-}
-
-double ResidualTests::cross_correlation_outside() const {
-  const Eigen::ArrayXd band = cross_correlation_band.reshaped();
-  const auto lags = cross_correlation.array();
-  return share((lags.abs() > band.replicate(1, lags.cols())).count(), (!lags.isNaN()).count());
-}
 
 double ljung_box_p(const VectorXd& autocorrelation, Index N) {
   const Index lags = std::min(autocorrelation.size() - 1, N / 5);

@@ -28,11 +28,6 @@ struct ResidualTests {
                                            ///< 5) lags
 
   Index states() const { return autocorrelation.rows(); }
-  /// Shares of the lags whose correlations lie outside their bands. For an adequate model a share is 1 - level on
-  /// average. The first share is for autocorrelations at lags 1 .. lags, the second for cross-correlations at lags 0 ..
-  /// lags. NaN if no correlation is defined.
-  double autocorrelation_outside() const;
-  double cross_correlation_outside() const;
 };
 
 /// Portmanteau test of Ljung & Box (1978), Biometrika 65(2): p value of the hypothesis of no autocorrelation. Inputs

@@ -4,6 +4,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 
+#include "ident/base/covariance.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/sample_quantile.hpp"
 #include "ident/base/seed.hpp"
@@ -68,14 +69,6 @@ double half_range(const std::vector<StepResponse>& drawn, Number number) {
   return (sample_quantile(values, 1.0 - tail) - sample_quantile(values, tail)) / 2.0;
 }
 
-/// A root of a covariance that may be singular. It is scaled first, because parameters have different units.
-MatrixXd root_of(const MatrixXd& covariance) {
-  const VectorXd sd = covariance.diagonal().cwiseSqrt();
-  const VectorXd inverse = (sd.array() > 0.0).select(sd.cwiseInverse(), 0.0);
-  const SymmetricEigen axes = symmetric_eigen(inverse.asDiagonal() * covariance * inverse.asDiagonal());
-  return sd.asDiagonal() * axes.vectors * axes.values.cwiseMax(0.0).cwiseSqrt().asDiagonal();
-}
-
 StepResponse response(const LinearStructure& s, const VectorXd& theta, const std::vector<Index>& delay, double dt_s) {
   StepResponse found;
   for (const auto number : numbers) (found.*number).setConstant(s.states, s.inputs, not_a_number);
@@ -100,9 +93,9 @@ EstimatedStepResponse step_response(const LinearStructure& s, const VectorXd& th
   auto generator = make_generator(0, "step response");
   boost::random::normal_distribution<double> normal(0.0, 1.0);
   std::vector<StepResponse> drawn(draws);
-  const MatrixXd root = root_of(covariance);
+  const MatrixXd root = covariance_root(covariance);
   for (StepResponse& one : drawn) {
-    const VectorXd z = VectorXd::NullaryExpr(theta.size(), [&](Index) { return normal(generator); });
+    const VectorXd z = VectorXd::NullaryExpr(root.cols(), [&](Index) { return normal(generator); });
     one = response(s, theta + root * z, delay, dt_s);
   }
   result.never_settles = 0.0;

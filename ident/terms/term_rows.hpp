@@ -25,8 +25,7 @@ struct TermRows {
 };
 
 /// Collects the rows. With six or more runs, the parts are the runs. Fewer than six runs are cut into at least ten
-/// stretches. Long recordings are thinned to evenly spaced stretches of about `most_rows` rows in total. Sample weights
-/// are ignored.
+/// stretches. Long recordings are thinned to evenly spaced stretches of about `most_rows` rows in total.
 TermRows gather_term_rows(const Recording& recording, const LinearStructure& widest, Eigen::Index most_rows);
 
 /// Mean difference of log densities over rows, and its standard error over parts.

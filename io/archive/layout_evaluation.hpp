@@ -36,7 +36,6 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 /// - log_density: log density of the measurement
 /// - mode_probability_predicted: probabilities before the measurement
 /// - mode_probability: probabilities after the measurement
-/// - spread_share: share of `innovation_covariance` (of its trace) that comes from differences between the modes
 /// - smoothed_state: estimate given the whole run, with `filter.smooth`
 /// - smoothed_covariance: covariance of `smoothed_state`
 /// - viterbi_mode: the mode in the most probable sequence of modes; -1: before the filter's start
@@ -52,7 +51,6 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
   io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"S", "K"});
   io.field("mode_probability", evaluation.mode_probability, {"S", "K"});
-  io.optional_field("spread_share", evaluation.spread_share, {"S"});
   io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n_y"}, states);
   io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states));
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));

@@ -20,13 +20,15 @@ namespace {
 std::string screen(const std::string& path, int width) {
   const py::gil_scoped_release unlocked;
   const Archive archive = read_archive(path, Evaluations::in_file);
-  return app::has_first_screen(archive) ? app::first_screen(archive, app::resolved_values(archive.config), path, width)
-                                        : app::summary_text(archive, width);
+  const app::Settings settings = app::resolved_values(archive.config);
+  return app::has_first_screen(archive) ? app::first_screen(archive, settings, path, width)
+                                        : app::summary_text(archive, app::time_unit(settings), width);
 }
 
 std::string summary(const std::string& path, int width) {
   const py::gil_scoped_release unlocked;
-  return app::summary_text(read_archive(path, Evaluations::in_file), width);
+  const Archive archive = read_archive(path, Evaluations::in_file);
+  return app::summary_text(archive, app::time_unit(app::resolved_values(archive.config)), width);
 }
 
 /// One dictionary for each family of modes. The most used family comes first.
@@ -65,8 +67,8 @@ void bind_archive(py::module_& module) {
       py::arg("path"), "SHA-256 of an archive after a check; throws DataError for a file that is not an archive.");
   module.def("families", &families, py::arg("path"),
              "Families of the modes of an archive's bank, most used first: one dictionary per family.");
-  module.def("screen", &screen, py::arg("path"), py::arg("width"));
-  module.def("summary", &summary, py::arg("path"), py::arg("width"));
+  module.def("screen", &screen);
+  module.def("summary", &summary);
 }
 
 }  // namespace modebank::python

@@ -153,9 +153,6 @@ void bind_filter(py::module_& module) {
                                                     "normalised innovation squared of the measured signals")
                                       .def_readonly("log_density", &Estimate::log_density,
                                                     "log density of the measurement under its prediction [nats]")
-                                      .def_readonly(
-                                          "spread_share", &Estimate::spread_share,
-                                          "share of the modes' differences in the innovation covariance's trace")
                                       .def_readonly("steps", &Estimate::steps,
                                                     "model steps since the sample before; 0: the filter started here");
   py::class_<ForecastArrays>(

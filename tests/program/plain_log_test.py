@@ -180,8 +180,10 @@ class PlainLogs(ProgramTest):
         self.loop(moves=False)
         files = sorted(path.name for path in self.folder.glob("run_*.csv"))
         message = modebank("run", *files, "--data.input", "throttle", cwd=self.folder, status=1).stderr
-        self.assertIn("throttle", message)
-        self.assertIn("set point", message)
+        self.assertRegex(message, "throttle = .* set point")
+        modebank("init", *files, "-o", "x.ini", "--force", cwd=self.folder)
+        done = modebank("run", "x.ini", "--until", "windows", "--data.input", "throttle", cwd=self.folder)
+        self.assertRegex(" ".join(done.stdout.split()), "doubt throttle = .* set point")
 
 
 if __name__ == "__main__":

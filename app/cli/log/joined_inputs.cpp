@@ -19,6 +19,11 @@ namespace {
 
 using Eigen::Index;
 
+constexpr const char* alike_words = ", so the log cannot tell them apart";
+constexpr const char* resting_words =
+    ", so a controller with a set point at rest computes it, and the log cannot tell that from the plant: record a run "
+    "in which the set point moves";
+
 std::vector<std::string> names_of_columns(const Recording& recording) {
   std::vector<std::string> names = names_of(recording.states);
   for (const std::string& input : names_of(recording.inputs)) names.push_back(input);
@@ -68,6 +73,8 @@ Index input_to_leave(const ColumnRelation& relation, const std::vector<std::stri
   return set_point == inputs.end() ? relation.column : *set_point;
 }
 
+}  // namespace
+
 void remove_input(Recording& recording, Index input) {
   recording.inputs.erase(recording.inputs.begin() + input);
   for (Trajectory& run : recording.runs) {
@@ -77,37 +84,44 @@ void remove_input(Recording& recording, Index input) {
   }
 }
 
-}  // namespace
-
 void leave_out_joined_inputs(const std::filesystem::path& file, const std::filesystem::path& archive,
                              const std::string& typed, bool stated, Proposal& proposal) {
   const Config config = LogConfiguration(proposal, typed).config(file, archive);
   Recording recording = import_data(data_options_of(config)).recording;
-  std::vector<std::string> kept = config.data.input;
+  std::vector<std::string> kept = config.data.input, units = config.data.input_unit;
   if (kept.size() != recording.inputs.size()) return;
   while (!recording.inputs.empty()) {
     const Identifiability found = identifiable(recording, decimal_steps(recording));
     const Index n = recording.state_count();
-    const auto relation = std::find_if(found.relations.begin(), found.relations.end(),
-                                       [&](const ColumnRelation& one) { return one.column >= n; });
+    const auto relation = std::find_if(found.relations.begin(), found.relations.end(), [&](const ColumnRelation& one) {
+      return one.column >= n && (one.complete || !one.follows_states);  // a smooth set point also gives 20 lags
+    });
     if (relation == found.relations.end()) return;
     const std::vector<std::string> names = names_of_columns(recording);
     const std::string words = relation_words(*relation, names);
-    if (relation->follows_states)
-      throw DataError(
-          fmt::format("{}, so a controller with a set point at rest computes it, and the log cannot tell "
-                      "that from the plant: record a run in which the set point moves",
-                      words));
-    const Index out = input_to_leave(*relation, names, n) - n;
-    const std::string& name = names[static_cast<std::size_t>(n + out)];
-    proposal.doubt(fmt::format("{}, so the log cannot tell them apart: {}", words,
-                               stated ? "leave " + name + " out of data.input" : name + " is left out of the inputs"),
-                   "input");
+    if (relation->follows_states) throw DataError(words + resting_words);
     if (stated) return;
+    const Index out = input_to_leave(*relation, names, n) - n;
+    proposal.doubt(
+        fmt::format("{}{}: {} is left out of the inputs", words, alike_words, names[static_cast<std::size_t>(n + out)]),
+        "input");
     kept.erase(kept.begin() + out);
     remove_input(recording, out);
     proposal.set("input", format_value(kept), words);
+    if (units.size() < 2) continue;  // none, or one for all
+    units.erase(units.begin() + out);
+    proposal.set("input_unit", format_value(units), "guessed from the names");
   }
+}
+
+std::vector<std::string> joined_doubts(const Recording& recording) {
+  const std::vector<std::string> names = names_of_columns(recording);
+  std::vector<std::string> doubts;
+  for (const ColumnRelation& relation : identifiable(recording, decimal_steps(recording)).relations)
+    if (relation.column >= recording.state_count())
+      doubts.push_back(relation_words(relation, names) +
+                       (relation.complete && relation.follows_states ? resting_words : alike_words));
+  return doubts;
 }
 
 }  // namespace modebank::app

@@ -91,7 +91,7 @@ nlohmann::json origin_section(const Archive& archive) {
           {"config", archive.config},
           {"changed", changed_settings(archive.config)},
           {"structures", structures_of(archive)},
-          {"summary", summary_text(archive)}};
+          {"summary", summary_text(archive, time_unit(resolved_values(archive.config)))}};
 }
 
 }  // namespace modebank::app::report

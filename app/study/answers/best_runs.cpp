@@ -2,12 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <string>
+
 #include "app/config/config_file.hpp"
 #include "app/study/answers/answers_text.hpp"
 #include "io/files/replace_file.hpp"
 
 namespace modebank::app {
 
+namespace {
+
+/// Configuration of the best setting by one score, ready for `modebank run`, with a comment that explains it.
 std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best) {
   const TrialRow& row = table.rows[best.row];
   Config config = trial_config(study, table.varied_keys, row);
@@ -20,6 +25,8 @@ std::string best_run_text(const Config& study, const StudyTable& table, const Be
     text += "# It was chosen by the held-out runs, so their scores are too good. Judge it on other runs.\n";
   return text + "\n" + resolved_text(config);
 }
+
+}  // namespace
 
 void write_best_run(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
                     const Answers& answers) {

@@ -29,7 +29,6 @@ RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
   e.log_density.resize(samples);
   e.mode_probability_predicted.resize(K, samples);
   e.mode_probability.resize(K, samples);
-  e.spread_share.resize(samples);
   return e;
 }
 
@@ -46,7 +45,6 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.log_density(k) = estimate.log_density;
   e.mode_probability_predicted.col(k) = estimate.mode_probability_predicted;
   e.mode_probability.col(k) = estimate.mode_probability;
-  e.spread_share(k) = estimate.spread_share;
 }
 
 /// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples. If no signal was

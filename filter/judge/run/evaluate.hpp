@@ -25,8 +25,6 @@ struct RunEvaluation {
   Eigen::VectorXd log_density;            ///< N, nats
   Eigen::MatrixXd mode_probability_predicted;  ///< K x N, mode probabilities before the measurement
   Eigen::MatrixXd mode_probability;            ///< K x N, mode probabilities after the measurement
-  Eigen::VectorXd spread_share;  ///< N, share of the trace of innovation_covariance that comes from differences between
-                                 ///< the modes
 
   // Filled by smooth_run; otherwise empty.
   Eigen::MatrixXd smoothed_state;       ///< n x N, state given the whole run

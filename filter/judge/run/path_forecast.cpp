@@ -2,7 +2,7 @@
 #include <utility>
 
 #include "filter/judge/run/free_run_forecasts.hpp"
-#include "ident/base/linalg.hpp"
+#include "ident/base/covariance.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {

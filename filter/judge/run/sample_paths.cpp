@@ -7,17 +7,11 @@
 #include <utility>
 
 #include "filter/step/equations/bounds.hpp"
-#include "ident/base/linalg.hpp"
+#include "ident/base/covariance.hpp"
 
 namespace modebank {
 
 using Eigen::Index;
-
-Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance) {
-  const SymmetricEigen parts = symmetric_eigen(covariance);
-  const Index directions = (parts.values.array() > 0.0).count();  // values increase, so positive values come last
-  return parts.vectors.rightCols(directions) * parts.values.tail(directions).cwiseSqrt().asDiagonal();
-}
 
 namespace {
 

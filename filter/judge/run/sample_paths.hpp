@@ -59,8 +59,4 @@ class SamplePaths {
   void keep(const std::vector<Eigen::Index>& which);
 };
 
-/// A square root L of the covariance: L L' is the covariance. If the covariance is singular, L has fewer columns than
-/// rows.
-Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& covariance);
-
 }  // namespace modebank

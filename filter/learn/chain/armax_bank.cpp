@@ -1,10 +1,11 @@
 #include "filter/learn/chain/armax_bank.hpp"
 
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <vector>
 
 #include "filter/learn/from_mixture/bank_frame.hpp"
-#include "ident/base/linalg.hpp"
+#include "ident/base/covariance.hpp"
 #include "ident/base/seed.hpp"
 
 namespace modebank {
@@ -26,15 +27,15 @@ std::vector<Index> columns_of(const LinearStructure& s) {
   return columns;
 }
 
-Parameters parameters_of(const ArmaxFit& fit, bool constant) {
+Parameters parameters_of(const ArmaxFit& fit) {
   const Index n = fit.theta.rows(), m = std::ssize(fit.delays), all = fit.covariance.rows() / n;
   Parameters result;
   result.structure = {n,
                       m,
-                      constant,
+                      fit.order.has_constant(),
                       fit.order.state_lags,
                       std::max<Index>(1, fit.order.input_lags),
-                      m > 0 ? InputDelays(fit.delays) : InputDelays()};
+                      InputDelays(fit.delays)};
   const std::vector<Index> columns = columns_of(result.structure);
   Eigen::MatrixXd rows = fit.theta(Eigen::all, columns);
   rows.leftCols(n) -= Eigen::MatrixXd::Identity(n, n);
@@ -50,14 +51,13 @@ Parameters parameters_of(const ArmaxFit& fit, bool constant) {
 Eigen::VectorXd errors_of_R(const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
   constexpr Index draws = 200;
   const Index n = fit.theta.rows(), q = fit.theta.cols(), p = fit.covariance.rows();
-  const Cholesky factor(fit.covariance);
-  if (!factor.definite()) return {};
+  const Eigen::MatrixXd root = covariance_root(fit.covariance);
   std::mt19937_64 generator = make_generator(1, "noises of the linear stage");
-  std::normal_distribution<double> normal;
+  boost::random::normal_distribution<double> normal;
   Eigen::MatrixXd drawn(n, draws);
   for (Index d = 0; d < draws; ++d) {
-    const Eigen::VectorXd z = Eigen::VectorXd::NullaryExpr(p, [&] { return normal(generator); });
-    const Eigen::MatrixXd moved = (factor.L() * z).reshaped<Eigen::RowMajor>(n, p / n);
+    const Eigen::VectorXd z = Eigen::VectorXd::NullaryExpr(root.cols(), [&] { return normal(generator); });
+    const Eigen::MatrixXd moved = (root * z).reshaped<Eigen::RowMajor>(n, p / n);
     ArmaxFit other = fit;
     other.theta += moved.leftCols(q);
     for (std::size_t j = 0; j < other.C.size(); ++j) other.C[j] += moved.middleCols(q + static_cast<Index>(j) * n, n);
@@ -72,10 +72,14 @@ Eigen::VectorXd errors_of_R(const ArmaxFit& fit, const std::optional<Eigen::Vect
 
 }  // namespace
 
+ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, Index inputs, bool intercept) {
+  return {{row.differences, row.state_lags, row.input_lags, row.noise_lags, intercept},
+          found.delays_of(row).by_input(inputs)};
+}
+
 Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
   const ArmaxNoise noise = noises(fit, stated_R);
-  const Parameters own = parameters_of(fit, fit.order.has_constant());
-  const Parameters levels = fit.order.differences ? parameters_of(in_levels(fit), false) : own;
+  const Parameters own = parameters_of(fit), levels = parameters_of(in_levels(fit));
   const Index p = levels.structure.parameters();
   Bank bank = bank_frame(recording, levels.structure, noise.R.asDiagonal());
   bank.model = levels.structure.lagged() ? "varx" : "linear";
@@ -83,8 +87,7 @@ Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optiona
                         levels.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0);
   if (!fit.delays.empty())
     mode.response = step_response(own.structure, own.theta, own.covariance, fit.delays, bank.dt_s);
-  if (const Eigen::VectorXd errors = errors_of_R(fit, stated_R); errors.size() > 0)
-    bank.R_standard_error = errors.asDiagonal();
+  bank.R_standard_error = errors_of_R(fit, stated_R).asDiagonal();
   bank.modes.push_back(std::move(mode));
   set_mode_sequence(bank, TransitionMatrix());
   return bank;

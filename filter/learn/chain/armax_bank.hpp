@@ -6,8 +6,12 @@
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/lag/armax.hpp"
+#include "ident/lag/structure.hpp"
 
 namespace modebank {
+
+/// The structure of a row of the table, with the delays that were found for the inputs.
+ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, Index inputs, bool intercept);
 
 /// One Kalman filter with theta, Q and R of the linear stage. Differences become levels with a pole at 1 and without a
 /// constant.

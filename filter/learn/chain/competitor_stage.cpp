@@ -28,12 +28,12 @@ GlobalModel linear_global(const Recording& recording, const WindowFits& windows,
 }
 
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
-                   const std::optional<Lags>& lags) {
+                   const std::optional<StageLags>& lags) {
   OneModel one{windows.model, windows.structure, {}};
   if (lags) {
-    one.structure.state_lags = (*lags)[0];
-    one.structure.input_lags = (*lags)[1];
-    one.structure.input_delay = one.structure.input_delay.with_latest((*lags)[2]);
+    one.structure.state_lags = lags->state_lags;
+    one.structure.input_lags = lags->input_lags;
+    one.structure.input_delay = lags->input_delay;
   }
   const bool of_windows = one.structure == windows.structure;
   one.global = of_windows ? linear_global(recording, windows, motion) : fit_global(recording, one.structure);
@@ -80,7 +80,7 @@ FoundTerms take_stated(const Recording& recording, const LinearStructure& struct
   std::vector<std::string> names = state_names(recording, structure);
   for (const std::string& input : input_names(recording, structure)) names.push_back(input);
   const TermRows rows = gather_term_rows(recording, structure, enough_rows);
-  if (rows.count() == 0) throw DataError("no training run has a usable transition for window.terms");
+  require_transitions(rows.count() > 0);
   FoundTerms found;
   found.structure = structure;
   found.terms = stated_terms(read_terms(terms), names, rows.X);

@@ -31,15 +31,15 @@ struct SingleModel {
 /// at most as many noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;               ///< filter of the competitors; needed for the memory of the noise scale
-  std::vector<Index> horizon;         ///< horizons at which `drifting` widens its predictions
-  Index transitions = 0;              ///< largest number of transitions to learn from, as for the bank; 0 takes all
-  std::uint64_t seed = 1;             ///< seed that selects these transitions
-  std::string terms = "auto";         ///< terms of `nonlinear`
-  RefineOptions em = {};              ///< how `nonlinear` is learned
-  std::optional<Lags> linear = {};    ///< lags of `baseline`, `noise_only` and `nonlinear`; if empty, the lags of the
-                                      ///< windows
-  std::optional<Lags> drifting = {};  ///< lags of `drifting`; if empty, the lags of the windows
+  FilterOptions filter;                  ///< filter of the competitors; needed for the memory of the noise scale
+  std::vector<Index> horizon;            ///< horizons at which `drifting` widens its predictions
+  Index transitions = 0;                 ///< largest number of transitions to learn from, as for the bank; 0 takes all
+  std::uint64_t seed = 1;                ///< seed that selects these transitions
+  std::string terms = "auto";            ///< terms of `nonlinear`
+  RefineOptions em = {};                 ///< how `nonlinear` is learned
+  std::optional<StageLags> linear = {};  ///< lags of `baseline`, `noise_only` and `nonlinear`; if empty, the lags of
+                                         ///< the windows
+  std::optional<StageLags> drifting = {};  ///< lags of `drifting`; if empty, the lags of the windows
 
   /// Needed for the bank, and for all competitors except `baseline` and `drifting`.
   NoiseByInput noise_by_input = NoiseByInput::none;
@@ -50,10 +50,10 @@ struct CompetitorInputs {
 /// Inputs of the competitor `one_motion`, which is learned like the bank.
 struct OneMotionInputs {
   BankOptions bank;
-  FilterOptions filter;             ///< its filter
-  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
-                                    ///< sample ahead
-  std::optional<Lags> lags = {};    ///< if empty, the lags of the windows are used
+  FilterOptions filter;                ///< its filter
+  std::vector<Index> horizon = {};     ///< horizons at which left-out training runs are predicted, in addition to one
+                                       ///< sample ahead
+  std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used
 };
 
 struct BankInputs {

@@ -26,7 +26,8 @@ using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs) {
   FoundTerms found;
   LinearStructure structure = learned.baseline->structure;
-  structure.centre.clear();
+  structure.intercept = inputs.window.intercept;  // a model of differences has none
+  structure.centre.clear();                       // terms are functions of the values themselves
   if (!inputs.terms_stated) found = find_terms(training, structure, inputs.window);
   if (found.terms.empty()) {
     found.structure = learned.nonlinear->structure;
@@ -36,7 +37,8 @@ Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training
 }
 
 /// The filters learned without the left-out runs of a split. Some come from refinement; the other filters get new
-/// coefficients. A few numbers are not learned again: Q and R of the baseline, and the rates of `drifting`.
+/// coefficients. A few numbers are not learned again: Q and R of a baseline that is
+/// not of the linear stage, and the rates of `drifting`.
 Learning learned_on(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs,
                     const OfSplits& of_splits, std::size_t split) {
   Learning anew;

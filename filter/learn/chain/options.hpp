@@ -24,9 +24,9 @@ struct AutomaticWindows {
 
 /// Lags and delays of the stages. A stage without an entry has those of the windows.
 struct OtherLags {
-  std::optional<Lags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
-  std::optional<Lags> one_motion = {};  ///< for one motion with switching noise
-  std::optional<Lags> drifting = {};
+  std::optional<StageLags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
+  std::optional<StageLags> one_motion = {};  ///< for one motion with switching noise
+  std::optional<StageLags> drifting = {};
   std::optional<ArmaxStructure> armax = {};  ///< for `baseline`, in place of `linear`
 };
 

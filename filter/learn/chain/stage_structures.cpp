@@ -133,9 +133,9 @@ void choose_for_stages(const Recording& recording, const StructureInputs& inputs
   if (rows.empty()) return;
   marked(rows, &StructureScore::chosen).linear = true;
   const StructureScore of_linear = marked(rows, &StructureScore::linear);
-  const Index more = of_linear.differences ? 1 : 0;
+  const Index more = of_linear.differences ? 1 : 0, of_inputs = recording.input_count() > 0 ? more : 0;
   const std::size_t exact =
-      position_of(rows, of_linear.state_lags + more, of_linear.input_lags + more, of_linear.input_delay);
+      position_of(rows, of_linear.state_lags + more, of_linear.input_lags + of_inputs, of_linear.input_delay);
   for (const Flag flag : {&StructureScore::chosen, &StructureScore::one_motion, &StructureScore::drifting})
     mark(rows, flag, exact);
   let_drifting_choose(recording, inputs, rows);
@@ -151,7 +151,6 @@ void choose_for_stages(const Recording& recording, const StructureInputs& inputs
   const StructureScore& chosen = marked(rows, &StructureScore::chosen);
   found.state_lags = chosen.state_lags;
   found.input_lags = chosen.input_lags;
-  found.input_delay = inputs.window.input_delay.with_latest(chosen.input_delay);
 }
 
 }  // namespace modebank

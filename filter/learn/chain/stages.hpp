@@ -37,7 +37,7 @@ struct OneModel {
 /// Fits one model with these lags. If no lags are given, uses those of the windows. `motion`: motion model of the
 /// windows, null for linear models.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
-                   const std::optional<Lags>& lags);
+                   const std::optional<StageLags>& lags);
 
 /// The baseline of the linear stage; empty where the training runs are too short for it.
 std::optional<Bank> learn_single(const Recording& recording, const SingleModel& single);

@@ -7,10 +7,10 @@
 #include <optional>
 #include <utility>
 
+#include "filter/learn/chain/armax_bank.hpp"
 #include "filter/learn/chain/stage_structures.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "ident/base/clustered_error.hpp"
-#include "ident/lag/armax.hpp"
 #include "ident/lag/structure_search.hpp"
 
 namespace modebank {
@@ -37,7 +37,7 @@ StructureScore row_of(const ArmaxCandidate& one, const ArmaxCandidate& best, con
   StructureScore row;
   row.state_lags = order.state_lags;
   row.input_lags = std::max<Index>(1, order.input_lags);
-  if (!one.fit.delays.empty()) row.input_delay = InputDelays(one.fit.delays).latest();
+  row.input_delay = InputDelays(one.fit.delays).latest();
   row.noise_lags = order.noise_lags;
   row.differences = order.differences;
   row.log_score = one.left_out.sum() / rows.sum();
@@ -51,7 +51,7 @@ StructureScore row_of(const ArmaxCandidate& one, const ArmaxCandidate& best, con
 /// before the first prediction of a run. Of few runs, folds are stretches.
 bool leaves_enough(const Recording& recording, const ArmaxFit& fit, Index most) {
   const Index more = fit.order.differences ? 1 : 0;
-  const Index delay = fit.delays.empty() ? 1 : InputDelays(fit.delays).latest();
+  const Index delay = InputDelays(fit.delays).latest();
   const Index memory = std::max(fit.order.state_lags, fit.order.input_lags + delay - 1) + more;
   Index lost = 0, runs = 0;
   for (const Trajectory& run : recording.runs)
@@ -81,7 +81,7 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   for (const ArmaxCandidate& one : stage.candidates) found.scores.push_back(row_of(one, *best, stage.rows));
   found.scores[stage.chosen].chosen = true;
   std::ranges::stable_sort(found.scores, std::greater(), &StructureScore::log_score);
-  if (!fit.delays.empty()) found.input_delay = InputDelays(fit.delays);
+  found.input_delay = InputDelays(fit.delays);
   found.samples = static_cast<Index>(stage.rows.sum());
   found.parts = stage.rows.size();
   found.by_runs = stage.by_runs;
@@ -89,11 +89,6 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   found.noise_lags = fit.order.noise_lags;
   found.differences = fit.order.differences;
   return found;
-}
-
-ArmaxStructure armax_of(const StructureScore& s, const FoundStructure& found, Index inputs, bool intercept) {
-  return {{s.differences, s.state_lags, s.input_lags, s.noise_lags, intercept},
-          found.input_delay.with_latest(s.input_delay).by_input(inputs)};
 }
 
 /// States the answer of the linear stage before the windows start.
@@ -130,14 +125,14 @@ LearningOptions with_structure(const LearningOptions& of, const FoundStructure& 
   FitOptions& window = options.window;
   window.state_lags = found.state_lags;
   window.input_lags = found.input_lags;
-  window.input_delay = found.input_delay;
+  window.input_delay = found.delays_of_modes();
   if (has_lags(window)) window.model = "varx";
   for (const StructureScore& s : found.scores) {
-    const Lags lags{s.state_lags, s.input_lags, s.input_delay};
+    const StageLags lags{s.state_lags, s.input_lags, found.delays_of(s)};
     if (s.linear) options.other_lags.linear = lags;
     if (s.linear && (s.noise_lags > 0 || s.differences)) {
-      const Index more = s.differences ? 1 : 0;
-      options.other_lags.linear = Lags{s.state_lags + more, s.input_lags + more, s.input_delay};
+      const Index more = s.differences ? 1 : 0, of_inputs = inputs > 0 ? more : 0;
+      options.other_lags.linear = StageLags{s.state_lags + more, s.input_lags + of_inputs, lags.input_delay};
       options.other_lags.armax = armax_of(s, found, inputs, window.intercept);
     }
     if (s.one_motion) options.other_lags.one_motion = lags;

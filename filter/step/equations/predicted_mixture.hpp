@@ -16,27 +16,22 @@ namespace modebank {
 inline constexpr double largest_nis = 1e300;
 
 /// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). For a
-/// quantised signal the variance of rounding, q^2 / 12, is added. Returns the share of the trace of S that comes from
-/// differences between the modes' predictions.
+/// quantised signal the variance of rounding, q^2 / 12, is added.
 template <int N, int NY, class State, class Covariance>
-double combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
+void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
   const Eigen::VectorXd& c = step.predicted_probability;
   x.setZero();
   for (std::size_t j = 0; j < step.kalman.size(); ++j)
     x += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
   S.setZero();
-  double scatter = 0.0;
   for (std::size_t j = 0; j < step.kalman.size(); ++j) {
     const double weight = c(static_cast<Eigen::Index>(j));
     step.difference = step.kalman[j].predicted.mean - x;
     small::multiply(step.residual, model.C, step.difference);
     small::add_about_mean(S, weight, step.kalman[j].innovation_covariance, step.residual);
-    for (Eigen::Index i = 0; i < step.residual.size(); ++i) scatter += weight * step.residual(i) * step.residual(i);
   }
   // covariance of the recorded value
   if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;
-  const double total = S.diagonal().sum();
-  return total > 0.0 ? std::min(1.0, scatter / total) : 0.0;
 }
 
 /// The innovation of a predicted mixture, and its normalised square. Memory is allocated once.

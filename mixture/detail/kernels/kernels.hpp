@@ -83,11 +83,6 @@ Kernels error_kernels(int features, bool diagonal);
 Index lanes();
 /// Sums the lanes of `count` entries, in lane order.
 void reduce_lanes(const double* lanes, Index count, double* sums);
-/// Replaces `count` values by their exp or log, computed in the same way as in the kernels. `count` is a multiple of 8,
-/// and `values` are aligned. exp has a relative error of 1e-15 on [-690, 0]; smaller arguments count as -690. log has
-/// an error of 1e-15 on [1, 1e300].
-void exp_in_place(double* values, Index count);
-void log_in_place(double* values, Index count);
 
 }  // namespace em
 }  // namespace modebank

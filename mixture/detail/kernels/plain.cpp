@@ -46,16 +46,6 @@ void reduce(const double* lanes, Index count, double* sums) {
 
 Index lane_count() { return L; }
 
-void exponentials(double* values, Index count) {
-  const Exp exp;
-  for (Index n = 0; n < count; n += L) store(exp(load(values + n)), values + n);
-}
-
-void logarithms(double* values, Index count) {
-  const Log log;
-  for (Index n = 0; n < count; n += L) store(log(load(values + n)), values + n);
-}
-
 }  // namespace modebank::em::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -65,14 +55,10 @@ namespace modebank::em {
 HWY_EXPORT(plain);
 HWY_EXPORT(reduce);
 HWY_EXPORT(lane_count);
-HWY_EXPORT(exponentials);
-HWY_EXPORT(logarithms);
 
 Kernels plain_kernels(int features, bool diagonal) { return HWY_DYNAMIC_DISPATCH(plain)(features, diagonal); }
 void reduce_lanes(const double* lanes, Index count, double* sums) { HWY_DYNAMIC_DISPATCH(reduce)(lanes, count, sums); }
 Index lanes() { return HWY_DYNAMIC_DISPATCH(lane_count)(); }
-void exp_in_place(double* values, Index count) { HWY_DYNAMIC_DISPATCH(exponentials)(values, count); }
-void log_in_place(double* values, Index count) { HWY_DYNAMIC_DISPATCH(logarithms)(values, count); }
 
 }  // namespace modebank::em
 #endif

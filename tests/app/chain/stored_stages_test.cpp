@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
+#include <nlohmann/json.hpp>
+
 #include "app/chain/chain.hpp"
 #include "app/config/config_file.hpp"
 #include "io/archive/archive.hpp"
@@ -9,10 +11,27 @@
 #include "io/files/read_file.hpp"
 #include "io/files/sha256.hpp"
 #include "tests/app/cli_fixture.hpp"
-#include "tests/support/archive_text.hpp"
 
 namespace modebank::test {
 namespace {
+
+/// All numbers of an archive below `path`, as text from which the same numbers can be read back.
+std::string numbers_of(const std::string& archive, const std::string& path) {
+  const nlohmann::json object = inspect(archive, path);
+  if (!object.contains("members")) return path + object.at("value").dump() + "\n";
+  std::string text = path + object.at("attributes").dump() + "\n";
+  for (const auto& [name, member] : object.at("members").items())
+    text += numbers_of(archive, (path == "/" ? "" : path) + "/" + name);
+  return text;
+}
+
+std::string all_stages(const std::string& archive) {
+  std::string text;
+  for (const char* stage : {"/data", "/windows", "/mixture", "/bank", "/baseline", "/noise_only", "/one_motion",
+                            "/drifting", "/evaluation", "/evaluation/evidence", "/residual_tests"})
+    text += numbers_of(archive, stage);
+  return text;
+}
 
 class StoredStages : public CliTest {};
 

@@ -212,9 +212,8 @@ TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
   linear.chosen = true;
   found.scores = {linear};
   choose_for_stages(recording, {{true, true, true}, {}}, found);
-  EXPECT_EQ(found.input_delay, 1);
-  const auto kept = std::find_if(found.scores.begin(), found.scores.end(), [](const auto& s) { return s.linear; });
-  EXPECT_EQ(kept->input_delay, 2);
+  EXPECT_EQ(found.delays_of_modes(), 1);
+  EXPECT_EQ(found.input_delay, 2);
 }
 
 /// Lags in the configuration may need more measured samples than a free run has at its start. These lags stay, and no

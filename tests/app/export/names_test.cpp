@@ -10,7 +10,6 @@
 #include "app/export/forms.hpp"
 #include "app/text/csv_text.hpp"
 #include "tests/app/export/exported.hpp"
-#include "tests/app/export/hostile_names.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/run_program.hpp"
 
@@ -20,6 +19,35 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::Not;
+
+/// Names that columns in users' files may have.
+const std::vector<std::string>& hostile_names() {
+  static const std::vector<std::string> names{"*/ int x; /*",
+                                              "*$F/ int x; /$f*",
+                                              "a\nb\r\n#error",
+                                              "line \\",
+                                              "?\?/",
+                                              "\"; import os; os.system('x') #",
+                                              "\"\"\"",
+                                              "'''\\",
+                                              "%{}{{}}%s$p$P$real",
+                                              "=cmd|' /C calc'!A0",
+                                              "+1",
+                                              "-1",
+                                              "@SUM(A1)",
+                                              "\t=1",
+                                              "\r=1",
+                                              "a: b # c",
+                                              "- &x *x !!python/object:os.system",
+                                              "\xff\xfe\x00",
+                                              "\xe2\x80\xa8line\xc2\x85",
+                                              "while",
+                                              "\\input{x} $ & % _ ^ ~",
+                                              "yaw rate [\xc2\xb0/s]",
+                                              "\x7f\x1b[31m",
+                                              " "};
+  return names;
+}
 
 TEST(Names, BecomeIdentifiersOfTheirOwn) {
   EXPECT_THAT(identifiers({"wz", "wz", "w z", "1st", "int", "", "\xc3\xa9", "_Bool"}),

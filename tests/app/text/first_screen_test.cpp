@@ -139,23 +139,6 @@ TEST(FirstScreen, EndsInWhatToUnderstandAndWhatToPredictWith) {
   EXPECT_EQ(app::named_forecasts(archive)[0].filter, "drifting");
 }
 
-/// The filter with the best density may have a larger error than another filter. 0.024 instead of 0.03 saves a fifth of
-/// the error.
-TEST(FirstScreen, NamesTheFilterOfLeastErrorWhereItIsAnother) {
-  Archive archive = screen_archive(1, 2, 3);
-  const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(1, 0.03);
-  archive.left_out.push_back({"bank", 1, 100, 1.0, rmse, 0.5});
-  archive.left_out.push_back({"nonlinear", 1, 100, 0.5, 0.99 * rmse, 0.5});
-  EXPECT_EQ(app::named_forecasts(archive)[0].point_filter, "bank");  // 1 % is less than the differences between runs
-  EXPECT_EQ(app::named_forecasts(archive)[0].point_gain, 0.0);
-  archive.left_out.back().rmse = 0.8 * rmse;
-  const app::NamedForecast named = app::named_forecasts(archive)[0];
-  EXPECT_EQ(named.filter, "bank");
-  EXPECT_EQ(named.point_filter, "nonlinear");
-  EXPECT_NEAR(named.point_gain, 0.2, 1e-12);
-  EXPECT_THAT(app::use_words(archive), testing::EndsWith("; least error 1 step ahead: `nonlinear` (20 % less)"));
-}
-
 /// The uses 0.5, 0.3, 0.18, ... fall below 0.01 after the eighth mode. Page and terminal both take their text from this
 /// struct.
 TEST(FirstScreen, ItsFieldsAreTheArchivesNumbers) {

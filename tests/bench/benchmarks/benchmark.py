@@ -30,16 +30,12 @@ class Arguments:
         self.out.mkdir(parents=True, exist_ok=True)
 
 
-class Failed(RuntimeError):
-    """Error of a run of the program, with its last line."""
-
-
 def run(program, config, archive, **options):
     """One `modebank run` on one thread. A double underscore in an option name stands for the dot."""
     flags = [text for key, value in options.items() for text in ("--" + key.replace("__", "."), str(value))]
     done = subprocess.run([program, "run", config, "--archive.output", archive, "--job.threads", "1", *flags], capture_output=True, text=True)
     if done.returncode != 0:
-        raise Failed(done.stderr.strip().splitlines()[-1])
+        sys.exit(done.stderr.strip().splitlines()[-1])
     return archive
 
 

@@ -96,7 +96,6 @@ TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
       EXPECT_TRUE(near(drifting.pit, bank.pit, 1e3 * drift_digits));
       EXPECT_TRUE(near(drifting.nis, bank.nis, 1e3 * drift_digits));
       EXPECT_TRUE(near(drifting.mode_probability, bank.mode_probability, 0.0));
-      EXPECT_TRUE(near(drifting.spread_share, bank.spread_share, drift_digits));
     }
 }
 

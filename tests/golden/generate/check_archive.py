@@ -279,7 +279,6 @@ def check_evaluation(file):
         expect_array(group["log_density"], (S,), "<f8", b"nat")
         expect_array(group["mode_probability_predicted"], (S, modes), "<f8")
         expect_array(group["mode_probability"], (S, modes), "<f8")
-        expect_array(group["spread_share"], (S,), "<f8")
         expect(f"{name} smoothed", "smoothed_state" in group, modes > 1)
         for which in ("mean", "sd", "lower", "upper"):
             expect_array(group[f"free_run_{which}"], (S, n), "<f8", STATE_UNITS)

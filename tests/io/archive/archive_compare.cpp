@@ -126,8 +126,7 @@ void list(Listing& to, const Finding& f) {
 }
 void list(Listing& to, const RunEvaluation& e) {
   to(e.prediction, e.innovation, e.innovation_covariance, e.state, e.covariance, e.nis, e.pit, e.log_density);
-  to(e.mode_probability_predicted, e.mode_probability, e.spread_share, e.smoothed_state, e.smoothed_covariance,
-     e.viterbi_mode);
+  to(e.mode_probability_predicted, e.mode_probability, e.smoothed_state, e.smoothed_covariance, e.viterbi_mode);
 }
 void list(Listing& to, const FreeRun& r) { to(r.mean, r.deviation, r.lower, r.upper, r.mode); }
 void list(Listing& to, const FilterEvaluation& e) { to(e.filter, e.runs, e.free_runs); }

@@ -19,7 +19,6 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.log_density = pattern(samples, 1, 77.0);
   evaluation.mode_probability_predicted = probability_pattern(count, samples, 78.0);
   evaluation.mode_probability = probability_pattern(count, samples, 79.0);
-  evaluation.spread_share = share_pattern(samples, 1, 81.0);
   if (count == 1) return evaluation;  // without filter.smooth
   evaluation.smoothed_state = pattern(n, samples, 82.0);
   evaluation.smoothed_covariance = spread_pattern(n, samples, 83.0);

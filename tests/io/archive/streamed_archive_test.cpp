@@ -82,7 +82,8 @@ Archive long_archive() {
 
 TEST_F(StreamedArchive, BlocksOfRowsMeetWhateverTheOrderOfRuns) {
   Archive archive = long_archive();
-  archive.evaluations.front().runs[1].spread_share = Eigen::VectorXd::Constant(70'000, 0.25);  // only this run has one
+  RunEvaluation& said = archive.evaluations.front().runs[1];  // only this run is smoothed
+  said.smoothed_state = said.smoothed_covariance = Eigen::MatrixXd::Constant(1, 70'000, 0.25);
   write_streamed(archive);
   EXPECT_EQ(verify_archive(path).problems, std::vector<std::string>());
   test::expect_same(read_archive(path), archive);

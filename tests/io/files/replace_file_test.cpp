@@ -5,13 +5,15 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
 #include "io/files/output_file.hpp"
+#include "io/files/temporary_file.hpp"
 #include "modebank/base/error.hpp"
-#include "tests/support/leftover.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank::test {
@@ -28,6 +30,14 @@ std::string text_of(const fs::path& file) {
 
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+/// Creates the temporary file of a process that was killed two days ago, and returns its path.
+fs::path leave_behind(const fs::path& target) {
+  const fs::path path = temporary_path(target);
+  std::ofstream(path) << "half";
+  fs::last_write_time(path, fs::file_time_type::clock::now() - std::chrono::hours(48));
+  return path;
 }
 
 TEST(TemporaryFile, StandsBesideItsTargetUnderANewName) {

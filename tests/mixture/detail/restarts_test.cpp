@@ -110,13 +110,6 @@ TEST(Restarts, BadOptionsAreNamed) {
   refused([&](SelectionOptions& options, double&) { options.em.tolerance = nan; });
   refused([&](SelectionOptions& options, double&) { options.em.covariance_floor = 1e300 * 1e300; });
   refused([&](SelectionOptions& options, double&) { options.em.restarts = 0; });
-  // A call with invalid arguments must throw. It must not count as a failed candidate.
-  GaussianMixture other_features = three_clusters(2.0);
-  other_features.means.conservativeResize(1, Eigen::NoChange);
-  for (Eigen::MatrixXd& covariance : other_features.covariances) covariance = Eigen::MatrixXd::Identity(1, 1);
-  SelectionOptions three;
-  three.components = {3};
-  EXPECT_THROW(select(points, {}, three, 1, &other_features), std::invalid_argument);
   refused([&](SelectionOptions&, double& samples) { samples = nan; });
   refused([&](SelectionOptions&, double& samples) { samples = -3.0; });
 }

@@ -7,7 +7,7 @@ const tilted = Math.sin(Math.PI / 4);
 
 let pen = null;
 /** The width of a text on the page. */
-export function textWidth(text) {
+function textWidth(text) {
   if (typeof document === 'undefined') return 6.5 * text.length;
   if (!pen) {
     pen = document.createElement('canvas').getContext('2d');

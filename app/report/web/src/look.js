@@ -10,10 +10,10 @@ export {palette, translucent};
 
 /** The colour of text and of measurements. */
 export const INK = 'var(--ink)';
-export const inkNow = () => (dark() ? '#e8eaee' : '#16181d');
+const inkNow = () => (dark() ? '#e8eaee' : '#16181d');
 
 /** A colour in the present theme. */
-export const onCanvas = (colour) => (colour === INK ? inkNow() : onGround(colour, dark()));
+const onCanvas = (colour) => (colour === INK ? inkNow() : onGround(colour, dark()));
 
 /** A trace or level of a time plot with its colour in the present theme, for a canvas. */
 export const coloured = (it) => ({...it, colour: onCanvas(it.colour)});

@@ -20,7 +20,7 @@ export function axisOf(study, name) {
 
 // Names of the columns of one kind (varied, score or cost).
 export const namesOf = (study, kind) => study.columns.filter((column) => column.kind === kind).map(({name}) => name);
-export const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
+const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
 
 export function scoreChoice(study, begin, onchange) {
   const scores = namesOf(study, 'score');

@@ -25,8 +25,6 @@ struct Estimate {
   std::vector<double> mode_probability;            ///< K, mode probabilities after the measurement
   double nis = 0.0;                                ///< normalised innovation squared of the available signals
   double log_density = 0.0;                        ///< log density of the measurement under the prediction [nats]
-  double spread_share = 0.0;                       ///< share of the trace of the innovation covariance that comes from
-                                                   ///< differences between the modes
   std::ptrdiff_t steps = 0;  ///< number of model steps since the previous sample; 0 means that the filter (re)started
                              ///< here
 };

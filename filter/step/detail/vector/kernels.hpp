@@ -60,7 +60,6 @@ struct CombinedMoments {
 
 struct CombinedExpectation {
   double *state, *innovation_covariance;  ///< number of entries: n, packed n_y
-  double differences = 0.0;               ///< sum_j c_j |C x_j - C x|^2
 };
 
 /// Complete samples; each is one step after the previous one.
@@ -86,7 +85,7 @@ struct Kernels {
   /// For a sample without measurement: the prediction becomes the state.
   void (*skip)(const ModeRows&) = nullptr;
   void (*merge)(const ModeRows&, CombinedMoments) = nullptr;
-  void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation&) = nullptr;
+  void (*combine)(const ModeRows&, const Sensor&, CombinedExpectation) = nullptr;
   /// The probability integral transform of the measurement y of the last update, n_y.
   void (*transform)(const ModeRows&, const double* y, double* pit) = nullptr;
 };

@@ -41,7 +41,7 @@ void merge(const ModeRows& p, CombinedMoments to) {
 }
 
 template <std::size_t N, std::size_t NY>
-void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
+void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation to) {
   const std::size_t stride = p.stride;
   for (std::size_t a = 0; a < N; ++a) {
     V sum = hn::Zero(D());
@@ -49,7 +49,7 @@ void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
       sum = hn::MulAdd(load(p.predicted_probability + r), load(p.predicted_mean + a * stride + r), sum);
     to.state[a] = sum_of(sum);
   }
-  V S[packed_size(NY)], differences = hn::Zero(D());
+  V S[packed_size(NY)];
   for (V& sum : S) sum = hn::Zero(D());
   for (std::size_t r = 0; r < stride; r += hn::Lanes(D())) {
     const V c = load(p.predicted_probability + r);
@@ -59,7 +59,6 @@ void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
       for (std::size_t a = 0; a < N; ++a)
         d[i] = hn::MulAdd(splat(sensor.C[i * N + a]),
                           hn::Sub(load(p.predicted_mean + a * stride + r), splat(to.state[a])), d[i]);
-      differences = hn::MulAdd(c, hn::Mul(d[i], d[i]), differences);
     }
     for (std::size_t i = 0; i < NY; ++i)
       for (std::size_t k = 0; k <= i; ++k) {
@@ -68,7 +67,6 @@ void combine(const ModeRows& p, const Sensor& sensor, CombinedExpectation& to) {
       }
   }
   for (std::size_t k = 0; k < packed_size(NY); ++k) to.innovation_covariance[k] = sum_of(S[k]);
-  to.differences = sum_of(differences);
 }
 
 /// (1 + 2 t) exp(t^2) erfc(t), t >= 0, as a polynomial in (t - 3.75) / (t + 3.75). Source: Shepherd & Laframboise 1981,

@@ -222,13 +222,10 @@ void VectorImm::follow(const Columns& inputs, const Columns& measurements, Eigen
   }
 }
 
-double VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
-  vector_imm::CombinedExpectation to{state.data(), packed_.data()};
-  kernels_.combine(rows_, sensor_, to);
+void VectorImm::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
+  kernels_.combine(rows_, sensor_, {state.data(), packed_.data()});
   unpack_symmetric(packed_, innovation_covariance);
   if (sensor_.quantum) innovation_covariance.diagonal().array() += quantum_.array().square() / 12.0;
-  const double total = innovation_covariance.diagonal().sum();
-  return total > 0.0 ? std::min(1.0, to.differences / total) : 0.0;
 }
 
 void VectorImm::transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {

@@ -19,7 +19,8 @@ class InputDelays {
   /// That of an input.
   std::ptrdiff_t operator[](std::ptrdiff_t input) const {
     return each_.empty() ? latest_ : each_[static_cast<std::size_t>(input)];
-  }  /// The least.
+  }
+  /// The least.
   std::ptrdiff_t earliest() const { return each_.empty() ? latest_ : *std::min_element(each_.begin(), each_.end()); }
   std::ptrdiff_t latest() const { return latest_; }                                                ///< the largest
   bool fits(std::ptrdiff_t inputs) const { return each_.empty() || std::ssize(each_) == inputs; }  ///< can be theirs
@@ -31,7 +32,7 @@ class InputDelays {
   std::vector<std::ptrdiff_t> listed() const { return earliest() == latest_ ? std::vector{latest_} : each_; }
   /// These delays if `delay` is the latest of them; otherwise `delay` for all inputs.
   InputDelays with_latest(std::ptrdiff_t delay) const { return delay == latest_ ? *this : InputDelays(delay); }
-  /// Whether all inputs have the same delays.
+  /// Whether each input has the same delay in both.
   friend bool operator==(const InputDelays& a, const InputDelays& b) {
     if (!a.each_.empty() && !b.each_.empty()) return a.each_ == b.each_;
     return a.latest_ == b.latest_ && a.earliest() == b.earliest();
