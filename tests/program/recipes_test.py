@@ -1,6 +1,7 @@
-"""docs/howto/recipes.md: its lines of Python run unchanged on the demo, and stop where the filter was rejected."""
+"""docs/howto/recipes.md: its lines run unchanged on the demo, and stop where the filter was rejected."""
 import json
 import re
+import shutil
 import subprocess
 import sys
 
@@ -15,10 +16,14 @@ DM = np.array
 Function = lambda name, given, made, *names: lambda *values: made
 """
 SEPARATION_M = 0.555
+PYTHON = [sys.executable, "-c"]
+RUNS = {"ROS 2": PYTHON, "CasADi": PYTHON}
+if shutil.which("octave-cli"):
+    RUNS["MATLAB"] = ["octave-cli", "--no-init-file", "--eval"]
 
 
 def recipe(heading):
-    return re.search(rf"^## {heading}.*?^```python\n(.*?)^```", PAGE, re.M | re.S)[1]
+    return re.search(rf"^## {heading}.*?^```\w+\n(.*?)^```", PAGE, re.M | re.S)[1]
 
 
 class Recipes(ProgramTest):
@@ -30,7 +35,7 @@ class Recipes(ProgramTest):
 
     def run_recipe(self, heading, after="", **changes):
         (self.folder / "bank.json").write_text(json.dumps(dict(self.bank, **changes)))
-        words = [sys.executable, "-c", recipe(heading) + after]
+        words = [*RUNS[heading], recipe(heading) + after]
         return subprocess.run(words, cwd=self.folder, capture_output=True, text=True)
 
     def numbers(self, name):
@@ -58,7 +63,7 @@ class Recipes(ProgramTest):
 
     def test_rejected_filters_stop_every_recipe(self):
         (self.folder / "casadi.py").write_text(CASADI)
-        for heading in ("ROS 2", "CasADi"):
+        for heading in RUNS:
             for change in (dict(verdict=dict(self.bank["verdict"], answer="overconfident")),
                            dict(source=dict(self.bank["source"], filter="baseline"))):
                 self.assertEqual(self.run_recipe(heading, **change).returncode, 1, (heading, change))
@@ -76,6 +81,20 @@ class Recipes(ProgramTest):
             A, B, c = (np.array(mode[key]["value"]).ravel() for key in "ABc")
             expected += (0.25 * T[0, j] + 0.75 * T[1, j]) * (A[0] * 0.3 + B @ [0.1, 0.4] + c[0])
         self.assertAlmostEqual(float(done.stdout.split()[-1]), expected, 12)
+
+    def test_matlab_predicts_as_the_equations(self):
+        if "MATLAB" not in RUNS:
+            print("Octave is absent: the recipe for MATLAB does not run")
+            return
+        modes = [dict(mode, c={"value": [[0.1 * k]]}) for k, mode in enumerate(self.bank["modes"], 1)]
+        done = self.run_recipe("MATLAB", "\nprintf('%.15g ', B, y(end))", modes=modes)
+        self.assertEqual(done.returncode, 0, done.stderr)
+        x, mu, T = 0, *(np.array(self.bank["transition"][key]) for key in ("initial_probability", "T"))
+        for _ in range(50):
+            mu = mu @ T
+            x = sum(mu[k] * (mode["A"]["value"][0][0] * x + mode["c"]["value"][0][0]) for k, mode in enumerate(modes))
+        expected = [*np.ravel([mode["B"]["value"] for mode in modes]), x]
+        np.testing.assert_allclose(np.array(done.stdout.split(), float), expected, rtol=1e-10)
 
 
 if __name__ == "__main__":

@@ -1,11 +1,11 @@
 #!/bin/sh
-# Starts a private Slurm on this machine: munged, slurmctld and one slurmd per emulated node, all in one folder, without services or files
-# elsewhere. Usage: slurm_up.sh FOLDER NODES CPUS_PER_NODE FIRST_PORT. Then set SLURM_CONF=FOLDER/slurm.conf; end it with slurm_down.sh
-# FOLDER.
+# Starts a private Slurm of two nodes, n1 and n2, on this machine: munged, slurmctld and two slurmd, all in one folder,
+# without services or files elsewhere. Usage: slurm_up.sh FOLDER FIRST_PORT. Then set SLURM_CONF=FOLDER/slurm.conf; end
+# it with slurm_down.sh FOLDER.
 set -eu
 PATH=$PATH:/usr/sbin
 mkdir -p "$1"
-folder=$(readlink -f "$1") nodes=$2 cpus=$3 port=$4
+folder=$(readlink -f "$1") port=$2
 host=$(hostname -s) user=$(id -un)
 cd "$folder"
 chmod 755 .
@@ -51,19 +51,17 @@ SlurmctldTimeout=30
 SlurmdTimeout=5
 JobRequeue=1
 CommunicationParameters=NoInAddrAny,NoCtldInAddrAny
-NodeName=n[1-$nodes] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + nodes))] CPUs=$cpus State=UNKNOWN
-PartitionName=main Nodes=n[1-$nodes] Default=YES MaxTime=INFINITE State=UP OverSubscribe=NO
+NodeName=n[1-2] NodeHostname=$host NodeAddr=127.0.0.1 Port=[$((port + 1))-$((port + 2))] CPUs=1 State=UNKNOWN
+PartitionName=main Nodes=n[1-2] Default=YES MaxTime=INFINITE State=UP OverSubscribe=NO
 CONF
 export SLURM_CONF="$folder/slurm.conf"
 slurmctld -f "$SLURM_CONF"
-node=1
-while [ $node -le "$nodes" ]; do
-  mkdir -p "tmp/n$node"
-  slurmd -f "$SLURM_CONF" -N "n$node"
-  node=$((node + 1))
+for node in n1 n2; do
+  mkdir -p "tmp/$node"
+  slurmd -f "$SLURM_CONF" -N "$node"
 done
 tries=0
-until [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = "$nodes" ]; do
+until [ "$(sinfo -h -t idle -o %D 2>/dev/null)" = 2 ]; do
   tries=$((tries + 1))
   [ $tries -le 3000 ] || { echo "the nodes did not come up:" >&2; tail -n 20 log/* >&2; exit 1; }
   sleep 0.1
