@@ -159,12 +159,11 @@ api: packages-check
 	@mkdir -p build/api
 	doxygen Doxyfile
 
-# The pages of docs/, build/docs/index.html: built offline, a warning is an error. Checks spelling.
+# The pages of docs/, build/docs/index.html: built offline, a warning is an error.
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
 	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
-	/usr/bin/python3 docs/check_spelling.py README.md docs
 
 # Runs what README and the tutorials print and compares the output; docs-update writes the present output into them.
 DATA := $(or $(MODEBANK_DATA),../shared/data)
@@ -178,7 +177,7 @@ docs-examples docs-update: packages-test packages-nightly build
 # Debian's modules.
 WORDS_THAT_ARE_RIGHT := lenght,nd,nees,positionof,vell
 lint: packages-check
-	git ls-files '*.[ch]' '*.[ch]pp' '*.py' '*.js' '*.css' '*.sh' '*.cmake' '*CMakeLists.txt' Makefile .ci | xargs codespell -q 3 -L $(WORDS_THAT_ARE_RIGHT)
+	git ls-files '*.md' '*.[ch]' '*.[ch]pp' '*.py' '*.js' '*.css' '*.sh' '*.cmake' '*CMakeLists.txt' Makefile .ci | xargs codespell -q 3 -L $(WORDS_THAT_ARE_RIGHT)
 	NODE_PATH=/usr/share/nodejs eslint --format unix app/report/web/src app/report/web/test
 
 shellcheck: packages-check
