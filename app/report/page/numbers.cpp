@@ -53,9 +53,7 @@ nlohmann::json number_list(const Eigen::VectorXd& values) {
 }
 
 nlohmann::json estimate(double value, double standard_error) {
-  nlohmann::json cell = number(value, estimate_text(value, standard_error));
-  if (std::isfinite(standard_error)) cell["se"] = standard_error;
-  return cell;
+  return number(value, estimate_text(value, standard_error));
 }
 
 nlohmann::json percent(double share) { return number(share, percent_text(share)); }

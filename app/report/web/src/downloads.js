@@ -31,8 +31,8 @@ export const csvOf = (rows) => rows.map((row) => row.map(quoted).join(',') + '\n
 
 /** A table in the order of the page, with numbers as exact as the archive's. */
 function tableFile(table) {
-  const rows = [...table.rows].filter((row) => !row.querySelector('input, select'));
-  return new Blob([csvOf(rows.map((row) => [...row.cells].map(cellText)))], {type: 'text/csv;charset=utf-8'});
+  const rows = [...table.rows].map((row) => [...row.cells].map(cellText));
+  return new Blob([csvOf(rows)], {type: 'text/csv;charset=utf-8'});
 }
 
 /** A button that saves a table with this caption. */

@@ -1,5 +1,5 @@
-// Pens that draw time plots: one for the screen (canvas) and one for files (SVG). Both give the same picture. A path is
-// a function that calls moveTo, lineTo, arc, rect, ... on its argument.
+// A pen that draws time plots on a canvas. A path is a function that calls moveTo, lineTo, arc, rect, ... on its
+// argument.
 const font = 'system-ui, "Segoe UI", "DejaVu Sans", sans-serif';
 const dashes = {
   dash: [6, 4],
