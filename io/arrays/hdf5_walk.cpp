@@ -19,8 +19,8 @@ void Hdf5Walk::group(hid_t id, const std::string& path, const std::string& name,
   if (!hdf5_text_attribute(id, "pandas_type").empty())
     return left_out.push_back(
         fmt::format("{0} is a frame of pandas, which is not read: python3 -c \"import pandas; pandas.read_hdf('{1}', "
-                    "'{0}').to_csv('{0}.csv')\"",
-                    name, file));
+                    "'{2}').to_csv('{0}.csv')\"",
+                    name, file, path));
   if (const std::string made = hdf5_text_attribute(id, "MATLAB_class"); is_object(id, made))
     return note_object(made, name);
   if (hdf5::has_attribute(id, "OCTAVE_NEW_FORMAT") && hdf5::has_link(id, "value"))

@@ -230,7 +230,7 @@ TEST_F(Hdf5Files, NameFramesOfPandasAndVariablesOfOctave) {
   for (const hid_t group : {frame, variable}) H5Gclose(group);
   H5Fclose(id);
   EXPECT_THAT(message_of<ConfigurationError>([&] { open_hdf5_columns(file); }),
-              AllOf(HasSubstr("pandas.read_hdf('" + file.string() + "', 'drive')"), HasSubstr("save('-v7'")));
+              AllOf(HasSubstr("pandas.read_hdf('" + file.string() + "', '/drive')"), HasSubstr("save('-v7'")));
 }
 
 }  // namespace
