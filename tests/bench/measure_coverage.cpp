@@ -2,7 +2,7 @@
 
 #include "tests/ident/fit/coverage_study.hpp"
 
-/// Prints the README's coverage table: the share of windows whose 95 % region holds the true parameters.
+/// Prints a table of docs/results/simulated.md: the share of windows whose 95 % region holds the true parameters.
 int main() {
   using namespace modebank;
   constexpr std::ptrdiff_t windows = 20'000;  // the standard error of a share is then 0.15 %
