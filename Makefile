@@ -219,7 +219,7 @@ FUZZ_SECONDS ?= 600
 fuzz: packages-build packages-test
 	tests/fuzz/run $(FUZZ_SECONDS) $(JOBS)
 
-# README's picture: a held-out run of the demo.
+# The picture of docs/index.md: a held-out run of the demo.
 picture: build
 	build/modebank demo -o $(DEMO)
 	/usr/bin/python3 docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Draws docs/pictures/demo.svg, README's picture: a held-out run of the demo, what was predicted, the modes, and the true ground.
+"""Draws docs/pictures/demo.svg, the picture of docs/index.md: a held-out run of the demo, what was predicted, the modes, and the true ground.
 
 Usage: demo.py ARCHIVE [RUN] > demo.svg, of `modebank demo`; `make picture` does it. Without RUN it is the held-out run whose
 most frequent ground has the fewest samples.
