@@ -31,4 +31,3 @@ endfunction()
 
 modebank_instruction_sets(ident short "*Batch.EveryWindowIsAt*/huber_*:*Batch.EveryWindowIsAt*/tukey_*")
 modebank_instruction_sets(mixture short "MixtureGolden.*:Mclust.*")
-modebank_instruction_sets(filter short "*GoldenFilter.*:VectorImm.*:LikelihoodGradient.*:Interval.FilterAgreesWithTheIndependentReference")

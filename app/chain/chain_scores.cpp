@@ -82,7 +82,7 @@ void Chain::score_competitors(const CompetitorScoreInputs& inputs) {
   const auto score_all = [&] {
     forget_competitors();
     put(test_global(*archive_.recording, *archive_.windows, inputs.window));
-    for (const char* filter : competitor_names) score(filter, competitor_filter(filter, inputs.filter), inputs.scoring);
+    for (const char* filter : competitor_names) score(filter, competitor_filter(filter), inputs.scoring);
   };
   const auto give = [&] {
     std::vector<std::string> models(competitor_names.begin(), competitor_names.end());
@@ -126,7 +126,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   archive_.left_out = std::move(stored.left_out);
   const ScoringOptions scoring = scoring_inputs(options);
   score("bank", options.filter, scoring);
-  for (const char* filter : competitor_names) score(filter, competitor_filter(filter, options.filter), scoring);
+  for (const char* filter : competitor_names) score(filter, competitor_filter(filter), scoring);
   conclude(options.filter, scoring);
   archive_.mode_names =
       mode_names_of(archive_, options.mode_names.empty() ? stored.mode_names : options.mode_names, listener_);

@@ -35,22 +35,6 @@ Rests rests_of(const Recording& recording) {
   return rests;
 }
 
-/// Median standard deviation of the predictions of measurement i, over samples in motion.
-double innovation_sd(const FilterEvaluation& bank, const Recording& recording, const Rests& rests, Role role, Index i) {
-  std::vector<double> variances;
-  for (std::size_t r = 0; r < recording.runs.size(); ++r) {
-    const RunEvaluation& run = bank.runs[r];
-    const Index n_y = run.innovation.rows();
-    for (Index k = 0; k < run.log_density.size() && recording.runs[r].role == role; ++k)
-      if (!std::isnan(run.log_density(k)) && !rests[r][static_cast<std::size_t>(k)])
-        variances.push_back(run.innovation_covariance(i * n_y + i, k));
-  }
-  if (variances.empty()) return 0.0;
-  const auto middle = variances.begin() + std::ssize(variances) / 2;
-  std::nth_element(variances.begin(), middle, variances.end());
-  return std::sqrt(*middle);
-}
-
 /// Standard deviation of the finite values; 0 if no value is finite.
 double standard_deviation(const Eigen::VectorXd& values) {
   const auto known = values.array().isFinite();
@@ -68,11 +52,10 @@ std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   return coefficients;
 }
 
-/// Resolution of each state over all judged runs. `quantum`: the bank's rounding steps. The scores of a state with a
-/// rounding step already treat its values as intervals. Samples at rest are ignored, because even fine measurements
-/// repeat their values at rest.
-std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::VectorXd& quantum,
-                                    const Recording& recording, Role role) {
+/// Resolution of each state over all judged runs. `quantum`: the bank's rounding steps. A state with a rounding step
+/// repeats its values, and its scores are masses of intervals. Samples at rest are ignored, because even fine
+/// measurements repeat their values at rest.
+std::vector<Resolution> resolutions(const Eigen::VectorXd& quantum, const Recording& recording, Role role) {
   const Rests rests = rests_of(recording);
   Index samples = 0;
   for (const Trajectory& run : recording.runs) samples += run.role == role ? run.samples() : 0;
@@ -87,10 +70,8 @@ std::vector<Resolution> resolutions(const FilterEvaluation& bank, const Eigen::V
       at_rest.insert(at_rest.end(), rests[r].begin(), rests[r].end());
     }
     const bool known = i < quantum.size() && quantum(i) > 0.0;
-    const ChannelCheck check = known ? ChannelCheck() : check_channel(values);
-    states.push_back({recording.states[static_cast<std::size_t>(i)].name, check.quantum,
-                      known ? 0.0 : repeats_in_motion(values, at_rest), innovation_sd(bank, recording, rests, role, i),
-                      standard_deviation(values)});
+    states.push_back({recording.states[static_cast<std::size_t>(i)].name,
+                      known ? 0.0 : repeats_in_motion(values, at_rest), standard_deviation(values)});
   }
   return states;
 }
@@ -108,10 +89,10 @@ std::optional<Finding> find_modes(const Archive& archive) {
       competitors.push_back(densities_of(evaluation, *archive.recording, role));
   }
   if (!bank || !archive.bank) return {};
-  Finding finding = judge_modes(
-      {*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
-       archive.horizons, resolutions(*bank, archive.bank->quantum, *archive.recording, role), archive.free_runs,
-       archive.one_motion_drifts(), archive.step_scatter, archive.diagnostics, error_pattern(archive, *bank)});
+  Finding finding =
+      judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
+                   archive.horizons, resolutions(archive.bank->quantum, *archive.recording, role), archive.free_runs,
+                   archive.step_scatter, archive.diagnostics, error_pattern(archive, *bank)});
   if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
   if (finding.description == Description::one_nonlinear_motion && archive.nonlinear) {
     const Bank& bent = *archive.nonlinear;

@@ -8,7 +8,7 @@
 #include "app/config/free_run_check.hpp"
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/smoother.hpp"
+#include "filter/judge/run/mode_sequence.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/judge/score/scores.hpp"
 #include "filter/judge/score/statistics.hpp"
@@ -24,7 +24,7 @@ namespace {
 struct Scored {
   const std::string& name;
   const Bank& bank;
-  const FilterOptions& filter;
+  bool chi_square_nis;  ///< whether every prediction is one Gaussian of known variance
   const std::vector<Trajectory>& runs;
   const ScoringOptions& scoring;
   const EvaluationStream* stream;
@@ -54,9 +54,7 @@ std::vector<Positions> parts_of(const std::vector<Trajectory>& runs, Role role) 
 /// Drops arrays that no judge reads. States and covariances are judged only if the truth is known. Without a sequence
 /// of modes, the state array also marks the samples that have a mode.
 void keep_for_judges(const Trajectory& run, RunEvaluation& e) {
-  for (Eigen::MatrixXd* array :
-       {&e.prediction, &e.smoothed_state, &e.smoothed_covariance, &e.mode_probability_predicted})
-    array->resize(0, 0);
+  for (Eigen::MatrixXd* array : {&e.prediction, &e.mode_probability_predicted}) array->resize(0, 0);
   if (run.truth.size() > 0) return;
   e.covariance.resize(0, 0);
   if (e.viterbi_mode.size() > 0) e.state.resize(0, 0);
@@ -103,7 +101,8 @@ void score_role(const Scored& scored, Role role, Evaluate evaluate, FilterScores
     }
   }
   append(summarize(scored.name, role, scored.runs, said.runs, scores), result.summary);
-  append(diagnose(scored.name, role, scored.bank, scored.filter, scored.runs, said.runs, scores), result.diagnostics);
+  append(diagnose(scored.name, role, scored.bank, scored.chi_square_nis, scored.runs, said.runs, scores),
+         result.diagnostics);
 }
 
 template <class Evaluate>
@@ -135,16 +134,13 @@ bool streams_evaluations(const Recording& recording) {
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
-  FilterOptions judged = filter;
-  if (!bank.running_noise.empty())
-    judged.noise = FilterNoise::adaptive;  // the filter learns its noise scale within the run, so its NIS is not
-                                           // chi-square
+  const bool chi_square_nis = bank.mode_count() == 1 && bank.running_noise.empty();
   check_free_run(bank.structure, scoring.free_run);
-  return score_runs({name, bank, judged, runs, scoring, stream}, free_runs(bank, runs, filter, scoring.free_run),
-                    [&](std::size_t i) {
+  return score_runs({name, bank, chi_square_nis, runs, scoring, stream},
+                    free_runs(bank, runs, filter, scoring.free_run), [&](std::size_t i) {
                       RunEvaluation said = evaluate_run(bank, runs[i], filter);
                       draw_pit(runs[i], scoring.seed, said);
-                      if (scoring.smooth) smooth_run(bank, runs[i], filter, said);
+                      if (bank.running_noise.empty()) said.viterbi_mode = mode_sequence(bank, runs[i], filter);
                       return said;
                     });
 }
@@ -187,11 +183,9 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
   for (const Forecaster& one : all) names.push_back(one.name);
   const std::vector<double> start = start_weights(archive.combination, 1, names);
   const std::vector<Trajectory>& runs = archive.recording->runs;
-  FilterOptions options = filter;
-  options.noise = FilterNoise::adaptive;  // a mixture's NIS is not chi-square
   const std::string name = combined_name;
   const Bank frame = combined_frame(all.front().bank);
-  return score_runs({name, frame, options, runs, scoring, stream},
+  return score_runs({name, frame, false, runs, scoring, stream},
                     combined_free_runs(all, runs, scoring.free_run, archive.combination), [&](std::size_t i) {
                       std::vector<std::unique_ptr<AnyFilter>> filters;
                       for (const Forecaster& one : all) filters.push_back(one.start());

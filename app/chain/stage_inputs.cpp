@@ -23,7 +23,7 @@ ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning) {
   const FitOptions window = learning.windows.window;
   return {std::move(learning),
           {options.data},
-          {window, competitor_filter("one_motion", options.filter), scoring},
+          {window, competitor_filter("one_motion"), scoring},
           {options.filter, scoring}};
 }
 

@@ -70,13 +70,12 @@ MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max
 MODEBANK_KEY_FIELDS(SelectionOptions, components, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
-                    measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, drift,
-                    transitions)
+                    measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, refine,
                     em)
-MODEBANK_KEY_FIELDS(FilterOptions, variant, noise)
+MODEBANK_KEY_FIELDS(FilterOptions, variant)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
-MODEBANK_KEY_FIELDS(ScoringOptions, horizon, smooth, free_run, seed)
+MODEBANK_KEY_FIELDS(ScoringOptions, horizon, free_run, seed)
 
 MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
@@ -86,10 +85,10 @@ MODEBANK_KEY_FIELDS(StageLags, state_lags, input_lags, input_delay)
 MODEBANK_KEY_FIELDS(ArmaxOrder, differences, state_lags, input_lags, noise_lags, intercept)
 MODEBANK_KEY_FIELDS(ArmaxStructure, order, delays)
 MODEBANK_KEY_FIELDS(SingleModel, structure, measurement_variance)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, horizon, transitions, seed, terms, em, linear, drifting,
-                    noise_by_input, single, all)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, filter, transitions, seed, terms, em, linear, noise_by_input, single, all)
 MODEBANK_KEY_FIELDS(OneMotionInputs, bank, filter, horizon, lags)
-MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, single, terms_stated)
+MODEBANK_KEY_FIELDS(DriftingInputs, horizon, lags)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, drifting, single, terms_stated)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, filter, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)

@@ -140,7 +140,7 @@ std::vector<Command> commands_to_use() {
        "Output lines: the estimate, its interval, the modes' probabilities, the prediction for the next sample, an "
        "alarm.",
        "modebank track robot.h5 < log.csv",
-       {"data", "filter.variant", "filter.noise", "track"},
+       {"data", "filter.variant", "track"},
        {as_json("print JSON objects; this is the default for JSON input")},
        run_track,
        {"data.truth", "data.label"}},
@@ -159,7 +159,7 @@ std::vector<Command> commands_to_use() {
         {"filter", "NAME", "filter of the archive; short for --track.filter", "track.filter"},
         output("FILE", "CSV file (standard output)")},
        run_predict,
-       {"data.truth", "data.label", "filter.horizon", "filter.smooth"}},
+       {"data.truth", "data.label", "filter.horizon"}},
       {"Use",
        "export",
        {"ARCHIVE --to FORM", "needs one archive", 1, 1},

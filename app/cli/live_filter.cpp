@@ -24,7 +24,7 @@ std::string tracked_bank(const Config& config) {
 
 FilterOptions tracked_options(const Config& config) {
   if (tracked_bank(config) == "bank") return config.filter;
-  return competitor_filter(std::string(name_of(config.track.filter)), config.filter);
+  return competitor_filter(std::string(name_of(config.track.filter)));
 }
 
 void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive) {
@@ -54,7 +54,7 @@ OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, con
 }
 
 OpenedFilter open_one(const OpenArchive& archive, const std::string& which, const Config& config) {
-  const FilterOptions options = which == "bank" ? config.filter : competitor_filter(which, config.filter);
+  const FilterOptions options = which == "bank" ? config.filter : competitor_filter(which);
   return open_bank(archive, which, options);
 }
 

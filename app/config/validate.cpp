@@ -52,27 +52,6 @@ void check_searched(const Config& config) {
           "window.input_lags = auto and window.input_delay = auto need inputs; name them in data.input");
 }
 
-/// Drifting modes need refinement, exactly measured states and filter.variant = imm.
-void check_drift(const Config& config) {
-  if (config.bank.em.drift == Drift::none) return;
-  const std::string drift = fmt::format("bank.drift = {}", name_of(config.bank.em.drift));
-  require(is_linear(config.window),
-          fmt::format("{} needs window.model = linear, varx or auto, not {}", drift, config.window.model));
-  require(refinement_asked(config.bank, true) == Refine::em, drift + " is learned by refinement; set bank.refine = em");
-  require(!config.bank.measurement_variance,
-          drift + " needs states measured exactly; leave bank.measurement_variance empty");
-  require(config.data.quantum.empty() && !config.data.quantum_auto,
-          drift + " needs states measured exactly; set data.quantum = none");
-  require(config.filter.variant == FilterVariant::imm,
-          fmt::format("{} needs filter.variant = imm, not {}", drift, name_of(config.filter.variant)));
-  const bool paths =
-      config.scoring.free_run.method == FreeRunMethod::paths || config.bank.transition == TransitionSource::logit;
-  require(config.scoring.free_run.samples == 0 || !paths,
-          drift +
-              " has no free run by sample paths; set filter.simulate_method = moments and bank.transition = labels, or "
-              "filter.simulate = 0");
-}
-
 }  // namespace
 
 void validate(const Config& config) {
@@ -101,7 +80,6 @@ void validate(const Config& config) {
                       "none, or bank.noise = per-mode",
                       name_of(config.bank.noise)));
   check_logit(config);
-  check_drift(config);
 }
 
 }  // namespace modebank::app

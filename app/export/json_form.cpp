@@ -193,10 +193,7 @@ OrderedJson transition_json(const ExportedBank& exported) {
 
 OrderedJson filter_json(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
-  OrderedJson result = {{"variant", name_of(exported.options.variant)},
-                        {"noise", name_of(exported.options.noise)},
-                        {"noise_forgetting", bank.noise_adaptation.forgetting},
-                        {"noise_prior_samples", bank.noise_adaptation.prior_samples}};
+  OrderedJson result = {{"variant", name_of(exported.options.variant)}};
   result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : OrderedJson(nullptr);
   result["noise_factor"] = nullptr;
   if (!bank.noise_factor.empty())
@@ -205,13 +202,6 @@ OrderedJson filter_json(const ExportedBank& exported) {
                               {"offset", bank.noise_factor.offset},
                               {"softening", NoiseFactor::softening},
                               {"largest", NoiseFactor::largest}};
-  result["drift"] = nullptr;
-  if (!bank.drift.empty())
-    result["drift"] = {{"q", bank.drift.rates.q},
-                       {"p0", bank.drift.rates.p0},
-                       {"leak", bank.drift.rates.leak},
-                       {"regressor_scale", vector_json(bank.drift.scale)},
-                       {"regressor_centre", vector_json(bank.structure.acting_centre())}};
   return result;
 }
 

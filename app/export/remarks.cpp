@@ -111,8 +111,6 @@ std::string doubt_about_parameter(const ExportedBank& bank, Index mode, Index pa
 
 std::vector<std::string> ExportedBank::remarks() const {
   std::vector<std::string> list;
-  if (!bank.drift.empty())
-    list.emplace_back("the modes' coefficients drift within a run; A, B and c are their values at the start of a run");
   if (!bank.noise_factor.empty())
     list.emplace_back(
         "the filter multiplies every Q by a factor of 0.2 to 5 that depends on state and input; Q here is for factor "
@@ -120,8 +118,6 @@ std::vector<std::string> ExportedBank::remarks() const {
   if (!bank.motion_parameters.empty())
     list.push_back(
         fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));
-  if (bank.is_quantised())
-    list.emplace_back("measurements are rounded (data.quantum), so the filter treats them as intervals");
   add_open_parameters(*this, list);
   add_unknown_errors(*this, list);
   for (Index k = 0; k < bank.mode_count(); ++k) add_vague_of_mode(*this, k, list);

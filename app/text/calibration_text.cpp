@@ -18,7 +18,7 @@ std::string passing_words() {
 std::string reason_words(const DiagnosticsRow& row) {
   const bool undecided = row.verdict == Calibration::undecided, over = row.verdict == Calibration::overconfident;
   const auto signals = static_cast<double>(row.state_rmse.size());
-  switch (reason_of(row)) {
+  switch (row.reason) {
     case CalibrationReason::few_samples:
       return fmt::format("too few independent samples to tell ({})", passing_words());
     case CalibrationReason::close:
@@ -31,6 +31,7 @@ std::string reason_words(const DiagnosticsRow& row) {
                          (undecided ? most_nis : 1.0 + nis_tolerance) * signals);
     case CalibrationReason::pattern:
       return fmt::format("errors resemble the ones before (lag-1 correlations within {:g} pass)", largest_correlation);
+    case CalibrationReason::none:
     case CalibrationReason::band:
       break;
   }

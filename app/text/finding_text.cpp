@@ -25,7 +25,7 @@ std::string judged(const Finding& finding) {
 
 /// Text such as "`drifting`: one linear model whose parameters wander".
 std::string described(const Finding& finding, const std::string& competitor) {
-  return fmt::format("`{}`: {}", competitor, description_of(competitor, finding.one_motion_drifts));
+  return fmt::format("`{}`: {}", competitor, description_of(competitor));
 }
 
 std::string gain_words(double gain, double error) {
@@ -119,21 +119,18 @@ std::string why_not_told(const Finding& finding) {
 }
 
 /// Text such as "78 % of the samples of y repeat the one before; ..."
-std::string coarse_reasons(const Finding& finding) {
+std::string repeating_words(const Finding& finding) {
   std::vector<std::string> reasons;
-  for (const Resolution& state : finding.coarse)
-    reasons.push_back(state.repeated > repeated_share
-                          ? fmt::format("{:.0f} % of the samples of {} repeat the one before (at most {:.0f} % passes)",
-                                        100 * state.repeated, state.state, 100 * repeated_share)
-                          : fmt::format("{} comes in steps of {:.3g}, and predictions are uncertain by {:.3g}",
-                                        state.state, state.quantum, state.innovation_sd));
+  for (const Resolution& state : finding.repeating)
+    reasons.push_back(fmt::format("{:.0f} % of the samples of {} repeat the one before (at most {:.0f} % passes)",
+                                  100 * state.repeated, state.state, 100 * repeated_share));
   return fmt::format("{}", fmt::join(reasons, "; "));
 }
 
-std::string coarse_words(const Finding& finding) {
+std::string not_comparable_words(const Finding& finding) {
   return fmt::format(
       "The log scores of the {} measure rounding rather than motion, so modes of motion are not judged: {}.",
-      judged(finding), coarse_reasons(finding));
+      judged(finding), repeating_words(finding));
 }
 
 /// Text such as "One linear model predicts the 2 held-out runs up to rounding: ..."
@@ -149,8 +146,8 @@ std::string without_noise_words(const Finding& finding) {
 std::string one_mode_words(const Finding& finding) {
   if (finding.without_noise) return without_noise_words(finding);
   std::string text = "The bank has one mode: no modes of motion.";
-  if (finding.coarse.empty()) return text;
-  return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", coarse_reasons(finding));
+  if (finding.repeating.empty()) return text;
+  return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", repeating_words(finding));
 }
 
 std::string not_yet_words(const Finding& finding) {
@@ -180,7 +177,7 @@ std::string answer_words(const Finding& finding) {
     case Answer::one_mode:
       return one_mode_words(finding);
     case Answer::not_comparable:
-      return coarse_words(finding);
+      return not_comparable_words(finding);
     case Answer::cannot_tell:
       return fmt::format("Cannot tell whether the {} {} modes of motion: {}.", judged(finding),
                          finding.runs == 1 ? "has" : "have", why_not_told(finding)) +

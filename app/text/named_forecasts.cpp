@@ -125,7 +125,7 @@ const Reached* best_of(const Archive& archive, const std::vector<Reached>& all, 
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
-  return bank && bank->drift.empty() && bank->terms.empty() && bank->noise_factor.empty() && !bank->is_quantised();
+  return bank && bank->terms.empty() && bank->noise_factor.empty() && !bank->is_quantised();
 }
 
 NamedForecast named(const Archive& archive, const std::vector<Reached>& all, const Reached& chosen, Index steps) {

@@ -60,12 +60,9 @@ std::string bank_text(const Bank& bank) {
   std::string text = fmt::format("bank      {} modes", bank.mode_count());
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
-  if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty())
-    text += fmt::format(", theta drifts in a run (rate {:g}, start {:g}, leak {:g})", rates.q, rates.p0, rates.leak);
   text += fmt::format("; R = {:.4g}", fmt::join(bank.R.diagonal(), " "));
   if (bank.is_quantised())
-    text +=
-        fmt::format("; values are intervals of {:.4g}, log scores log(mass / interval)", fmt::join(bank.quantum, " "));
+    text += fmt::format("; readings in steps of {:.4g}, log scores log(mass / step)", fmt::join(bank.quantum, " "));
   return text + "\n";
 }
 

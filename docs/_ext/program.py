@@ -21,7 +21,7 @@ SECTIONS = {
     "window": "The local model that is fitted in every window, its loss, prior and solver: [](../explanation/windows.md).",
     "mixture": "How the windows' parameters are clustered: [](../explanation/mixture.md).",
     "bank": "How a bank of modes is learned from the clusters and refined: [](../explanation/refinement.md).",
-    "filter": "How a bank is stepped, scored and smoothed: [](../explanation/filter.md).",
+    "filter": "How a bank is stepped and scored: [](../explanation/filter.md).",
     "archive": "Where results go, and an existing bank to judge.",
     "job": "Threads and seed.",
     "study": "Varied keys, and runs of a parameter study: [](../howto/studies.md).",

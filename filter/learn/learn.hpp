@@ -25,13 +25,13 @@ struct Baseline {
 };
 
 /// theta is the global least-squares estimate; Q (full) and R (diagonal) maximise the exact Gaussian likelihood. For
-/// rounded states all three maximise the likelihood of their intervals. With more than most_lags_beside_R lags, R is 0
-/// and Q is the residual covariance.
+/// rounded states all three do, with R of at least the variance of rounding. With more than most_lags_beside_R lags, R
+/// is 0 and Q is the residual covariance.
 Baseline learn_baseline(const Recording& recording, const GlobalModel& global, const LinearStructure& structure);
 
 /// The competitor with switching noise only. It has one theta (Huber's estimate), eight noise scales in geometric
 /// steps, and `stay` chosen on the training runs. If states are rounded, theta and the scales then maximise the
-/// likelihood of their intervals. `factor`: applies to all scales.
+/// filter's likelihood, whose R has the rounding. `factor`: applies to all scales.
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor = {});
 
@@ -42,11 +42,6 @@ Bank noise_levels_of(const Bank& single, const Recording& recording);
 /// learn_noise_only with another number of noise scales.
 Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                         Eigen::Index levels, const NoiseFactor& factor = {});
-
-/// The adaptation of a competitor's noise scale: the most likely one on the training runs among the settings of a
-/// bank's cross-validation. A competitor has few parameters, so no left-out runs are needed.
-NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
-                                       const RefineTuning& tuning);
 
 /// The competitor with one motion, learned like the bank. Expectation-maximisation with one theta shared by all modes
 /// starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses among them

@@ -18,11 +18,6 @@ struct RefineTuning {
   /// row. On ICE, FLOORING and DRIVE (training runs; 13, 13 and 10 starts) no start recovered after two checkpoints,
   /// but some recovered after one.
   int falls = 2;
-  /// Candidate memories of the noise scale: 20, 50 and 200 samples, and the whole run.
-  std::array<double, 4> forgettings{0.95, 0.98, 0.995, 1.0};
-  /// Candidate weights of the scale 1 at a run's start, in samples. They range from almost none to the length of most
-  /// short runs.
-  std::array<double, 4> noise_prior_samples{1.0, 2.0, 5.0, 20.0};
   std::ptrdiff_t fewest_whole_runs = 3;  ///< with fewer runs, runs are cut into stretches, because two folds would
                                          ///< train on half of the data
   std::ptrdiff_t shortest_stretch = 20;  ///< samples; in shorter stretches the filter would mostly be starting
@@ -37,7 +32,7 @@ struct RefineTuning {
   /// Probability that any proposal is accepted if the model needs no addition.
   double taken_by_chance = 0.05;
   /// Number of proposals for one configuration. The proposals are: number of modes, prior, measurement noise, noise by
-  /// input, transitions by state, drift, look-ahead.
+  /// input, transitions by state, look-ahead.
   int proposals = 7;
 
   // The prior.
@@ -81,17 +76,6 @@ struct RefineTuning {
   std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried after the number of modes has been chosen
   double little_memory_sd = 0.1;  ///< prior sd of log odds, tried with the chosen width; with a small value the
                                   ///< previous mode hardly matters
-
-  // Modes that drift: values to try, the middle ones first.
-  std::array<double, 5> drift_rates{1e-5, 1e-4, 1e-3, 1e-2, 1e-1};       ///< variance that a step adds to a coefficient
-  std::array<double, 6> drift_starts{0.0, 0.01, 0.1, 1.0, 10.0, 100.0};  ///< variance of a coefficient at a run's start
-  std::array<double, 3> drift_leaks{1.0, 0.97, 0.9};                     ///< factor per step on a coefficient's
-                                                                         ///< difference from the mode's coefficient
-
-  /// With drifting coefficients the noise scale can use few samples (DART: 0.9; banks without drift: 0.98).
-  std::array<double, 8> drift_forgettings{0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.98, 1.0};
-  std::array<double, 5> drift_noise_prior_samples{1e-3, 1e-2, 0.1, 1.0,
-                                                  5.0};  ///< weight of the scale 1 at a run's start, in samples
 
   // Measurement noise.
   double least_R_share = 1e-9;  ///< smallest R in refinement, as a share of the global residual variance; it is

@@ -49,14 +49,21 @@ modebank::RunningNoise to_internal(const RunningNoise& noise) {
     throw std::invalid_argument("running noise needs one factor per horizon");
   for (std::size_t i = 0; i < noise.horizon.size(); ++i)
     result.horizon_factor.emplace_back(static_cast<Index>(noise.horizon[i]), noise.factor[i]);
+  result.level = view(noise.level);
+  result.switching = view(noise.transition);
   return result;
 }
 RunningNoise from_internal(const modebank::RunningNoise& noise) {
-  RunningNoise result{to_vector(noise.floor), noise.lam, noise.nu};
+  RunningNoise result;
+  result.floor = to_vector(noise.floor);
+  result.forgetting = noise.lam;
+  result.degrees_of_freedom = noise.nu;
   for (const auto& [horizon, factor] : noise.horizon_factor) {
     result.horizon.push_back(static_cast<double>(horizon));
     result.factor.push_back(factor);
   }
+  result.level = to_matrix(noise.level);
+  result.transition = to_matrix(noise.switching);
   return result;
 }
 
@@ -76,7 +83,6 @@ std::shared_ptr<const modebank::Bank> to_internal(const BankDescription& d) {
   bank.state_names = d.state_names;
   bank.input_names = d.input_names;
   bank.dt_s = d.dt_s;
-  bank.noise_adaptation = {d.noise_memory.forgetting, d.noise_memory.prior_samples};
   if (const NoiseByState& noise = d.noise_by_state; !noise.weights.empty())
     bank.noise_factor = {view(noise.directions), view(noise.weights), noise.offset};
   bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale), d.drift.wandering};
@@ -143,7 +149,6 @@ BankDescription Bank::description() const {
   d.input_delay = bank_->structure.input_delay;
   d.intercept = bank_->structure.intercept;
   d.centre = bank_->structure.centre;
-  d.noise_memory = {bank_->noise_adaptation.forgetting, bank_->noise_adaptation.prior_samples};
   d.noise_by_state = {to_matrix(bank_->noise_factor.directions), to_vector(bank_->noise_factor.weights),
                       bank_->noise_factor.offset};
   d.drift = {to_vector(bank_->drift.scale), bank_->drift.rates.q, bank_->drift.rates.p0, bank_->drift.rates.leak,

@@ -17,6 +17,8 @@ namespace {
 
 using Eigen::Index;
 
+constexpr double sum_tolerance = 1e-9;  // of probabilities
+
 void expect_size(const std::string& what, Index rows, Index cols, Index expected_rows, Index expected_cols) {
   if (rows == expected_rows && cols == expected_cols) return;
   throw std::invalid_argument(what + " is " + std::to_string(rows) + " x " + std::to_string(cols) + ", must be " +
@@ -56,13 +58,6 @@ void check_logit_sizes(const Bank& bank) {
   expect_size("reference of the transition", logit.reference.size(), 1, d, 1);
 }
 
-void check_adaptation(const NoiseAdaptation& adaptation) {
-  const double f = adaptation.forgetting, n0 = adaptation.prior_samples;
-  require(f > 0.0 && f <= 1.0, "noise forgetting is " + std::to_string(f) + "; expected a value above 0, at most 1");
-  require(n0 > 0.0 && std::isfinite(n0),
-          "noise adaptation starts from " + std::to_string(n0) + " prior samples; expected a value above 0");
-}
-
 void check_noise_factor(const Bank& bank) {
   const NoiseFactor& factor = bank.noise_factor;
   if (factor.empty() && factor.directions.size() == 0) return;
@@ -77,47 +72,40 @@ void check_drift(const Bank& bank) {
   if (bank.drift.empty()) return;
   const LinearStructure& s = bank.structure;
   const DriftRates& rates = bank.drift.rates;
+  const Wandering wandering = bank.drift.wandering;
   expect_size("scale of the drift", bank.drift.scale.size(), 1, s.regressors(), 1);
   require(bank.drift.scale.allFinite() && bank.drift.scale.minCoeff() > 0.0,
           "drift needs a finite positive scale for each regressor");
   require(rates.q >= 0.0 && rates.p0 >= 0.0 && std::isfinite(rates.q + rates.p0),
           "drift q and p0 must be finite and at least 0");
   require(rates.leak > 0.0 && rates.leak <= 1.0, "drift leak must be above 0 and at most 1");
-  require(bank.motion_parameters.empty(), "drift needs linear modes, not those of " + bank.model);
   require((bank.R.array() == 0.0).all(), "drift needs exactly measured states: R must be 0");
   require(bank.C.isIdentity(0.0) && bank.C.rows() == s.states,
           "drift needs each state measured directly: C must be the identity");
-  require(bank.terms.empty(), "drift needs linear modes without terms");
-  require(bank.noise_factor.empty(), "drift needs noise that does not depend on state and input");
-  if (!has_one_theta(bank)) return;
-  double weight = 0.0;
-  for (const Mode& mode : bank.modes) {
-    require(mode.weight >= 0.0, "modes that share a drifting theta need weights of at least 0");
-    weight += mode.weight;
-  }
-  require(weight > 0.0 && std::isfinite(weight), "modes that share a drifting theta need a positive weight");
+  require(wandering != Wandering::constant || s.intercept, "structure has no constant that could drift");
+  require(wandering != Wandering::gain || s.inputs > 0, "structure has no inputs whose gain could drift");
 }
 
 void check_running_noise(const Bank& bank) {
   const RunningNoise& noise = bank.running_noise;
-  const Wandering wandering = bank.drift.wandering;
-  require(wandering == Wandering::all || !noise.empty(),
-          "drift of some coefficients (constant or gain) needs running noise");
+  require(bank.drift.empty() == noise.empty(), "running noise and drift need each other");
   if (noise.empty()) return;
-  const LinearStructure& s = bank.structure;
   const auto positive = [](const auto& x) { return x.allFinite() && (x.array() > 0.0).all(); };
-  expect_size("least variance of the running noise", noise.floor.size(), 1, s.states, 1);
+  expect_size("least variance of the running noise", noise.floor.size(), 1, bank.structure.states, 1);
   require(positive(noise.floor), "running noise needs a positive least variance of each state");
   require(bank.mode_count() == 1, "running noise needs exactly one mode");
   require(positive(bank.noise_variance()), "running noise needs a positive diagonal of Q");
-  require(!bank.drift.empty(), "running noise needs a mode that drifts");
-  require(wandering != Wandering::constant || s.intercept, "structure has no constant that could drift");
-  require(wandering != Wandering::gain || s.inputs > 0, "structure has no inputs whose gain could drift");
   require(noise.lam >= 0.0 && noise.lam <= 1.0, "running noise needs lam in [0, 1]");
   for (const auto& [ahead, factor] : noise.horizon_factor)
     require(ahead > 1 && factor > 0.0 && std::isfinite(factor),
             "horizon factors must be finite and positive, for horizons of at least 2");
   StudentNoise{noise.nu};
+  if (noise.level.size() == 0 && noise.switching.size() == 0) return;
+  const Index levels = noise.level.cols();
+  expect_size("noise levels", noise.level.rows(), levels, bank.structure.states, levels);
+  expect_size("transition matrix of the noise levels", noise.switching.rows(), noise.switching.cols(), levels, levels);
+  require(positive(noise.level), "noise levels must be finite and positive");
+  TransitionMatrix{noise.switching};
 }
 
 StartMoments measured_lags(const Bank& bank) {
@@ -131,13 +119,12 @@ StartMoments measured_lags(const Bank& bank) {
 }  // namespace
 
 TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std::move(row_stochastic)) {
-  constexpr double row_sum_tolerance = 1e-9;
   if (matrix_.rows() != matrix_.cols() || matrix_.rows() == 0)
     throw std::invalid_argument("transition matrix is " + std::to_string(matrix_.rows()) + " x " +
                                 std::to_string(matrix_.cols()) + ", must be square and not empty");
   for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
     const double sum = matrix_.row(i).sum();
-    if (!(std::abs(sum - 1.0) <= row_sum_tolerance))
+    if (!(std::abs(sum - 1.0) <= sum_tolerance))
       throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix sums to " +
                                   std::to_string(sum) + ", must be 1");
     if (!(matrix_.row(i).minCoeff() >= 0.0))
@@ -213,21 +200,25 @@ void validate(const Bank& bank) {
   require(bank.quantum.allFinite() && (bank.quantum.array() >= 0.0).all(), "quanta must be finite and at least 0");
   require(!bank.is_quantised() || bank.R.isDiagonal(0.0), "R is not diagonal, which quantised measurements require");
   require(bank.initial_probability.allFinite() && bank.initial_probability.minCoeff() >= 0.0 &&
-              bank.initial_probability.sum() > 0.0,
+              std::abs(bank.initial_probability.sum() - 1.0) <= sum_tolerance,
           "initial probabilities are not nonnegative numbers with sum 1");
   for (std::size_t j = 0; j < bank.modes.size(); ++j) check_numbers(bank.modes[j], " of mode " + std::to_string(j));
   require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
           "weights of the transition are not finite");
   check_terms(bank.terms, bank.structure.regressors());
-  check_adaptation(bank.noise_adaptation);
   check_noise_factor(bank);
   check_drift(bank);
   check_running_noise(bank);
 }
 
+Eigen::VectorXd Bank::rounding_variance() const {
+  return is_quantised() ? Eigen::VectorXd(quantum.array().square() / 12.0) : Eigen::VectorXd::Zero(C.rows());
+}
+
 Eigen::MatrixXd Bank::recording_noise() const {
-  if (!is_quantised()) return R;
-  return R + Eigen::MatrixXd((quantum.array().square() / 12.0).matrix().asDiagonal());
+  Eigen::MatrixXd noise = R;
+  if (is_quantised()) noise.diagonal() = R.diagonal().cwiseMax(rounding_variance());
+  return noise;
 }
 
 StartMoments start_moments(const Bank& bank) {

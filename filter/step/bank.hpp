@@ -56,13 +56,6 @@ struct Mode {
   EstimatedStepResponse response = {};       ///< response to steps of the inputs; empty but for single models
 };
 
-/// Speed at which the noise scale follows a run (filter/step/equations/noise_scale.hpp).
-struct NoiseAdaptation {
-  double forgetting = 0.98;  ///< forgetting factor per sample, in (0, 1]. The memory is 1 / (1 - forgetting) samples;
-                             ///< with 1 it is the whole run
-  double prior_samples = 5;  ///< weight of the scale 1 at a run's start, in samples, > 0
-};
-
 /// K modes, their transitions, and the measurement y = C x + v, v ~ N(0, R).
 struct Bank {
   std::string model = "linear";  ///< `linear`, `varx`, or the name of a motion model
@@ -71,8 +64,8 @@ struct Bank {
   Eigen::MatrixXd C;        ///< n_y x n
   Eigen::MatrixXd R;        ///< n_y x n_y
 
-  /// n_y, spacing of measured values [state unit]. A value determines only the interval that contains C x + v
-  /// (equations/interval.hpp). 0 marks a continuous signal; an empty vector means that all are continuous.
+  /// n_y, spacing q of measured values [state unit]. The filter's R is then at least q^2 / 12, and the score of a value
+  /// is the mass of its interval. 0 marks a continuous signal; an empty vector means that all are continuous.
   Eigen::VectorXd quantum = {};
   TransitionMatrix transition;          ///< K x K
   TransitionLogit transition_logit;     ///< dependence of the transition matrix on state and input; empty if it is
@@ -83,8 +76,7 @@ struct Bank {
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
   std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear models
-  NoiseAdaptation noise_adaptation;               ///< used by filters with adaptive noise
-  BankDrift drift;                                ///< drift of each mode's theta within a run; empty without drift
+  BankDrift drift;                                ///< drift of a single mode with running noise; empty without drift
   MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty without terms
   NoiseFactor noise_factor = {};                  ///< factor on every Q that depends on state and input; empty without
                                                   ///< a factor
@@ -96,8 +88,9 @@ struct Bank {
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
-  /// Variances of the difference between recorded values and C x: R, plus the variance of the rounding error, which is
-  /// uniform within the quantum.
+  /// n_y, variance of the rounding error, q^2 / 12: it is uniform within the quantum. 0 for continuous signals.
+  Eigen::VectorXd rounding_variance() const;
+  /// Covariance of the difference between recorded values and C x: R, with at least the variance of rounding.
   Eigen::MatrixXd recording_noise() const;
   /// The variances of the first mode's process noise, n_s.
   auto noise_variance() { return modes.front().Q.diagonal().head(structure.states); }
@@ -113,8 +106,7 @@ Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& thet
 bool has_one_theta(const Bank& bank);
 
 /// Throws std::invalid_argument with the name of the first invalid part. A part is invalid if its size does not fit the
-/// other parts, a number is not finite, a variance is negative, probabilities are invalid, or a noise adaptation is out
-/// of range.
+/// other parts, a number is not finite, a variance is negative, or probabilities are invalid.
 void validate(const Bank& bank);
 /// Checks the sizes only. Candidates of an optimiser may have extreme numbers.
 void check_sizes(const Bank& bank);
@@ -125,8 +117,7 @@ void check_sizes(const Bank& bank);
 inline constexpr double unobserved_variance_factor = 1e4;
 
 /// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the first measurements of all samples in
-/// z are used; the gain is I, and each sample has the covariance R. Quantised values start with a uniform distribution
-/// in their interval.
+/// z are used; the gain is I, and each sample has the covariance R.
 struct StartMoments {
   Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
   Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure. For C =

@@ -30,8 +30,7 @@ void check_memory(const FilterMemory& memory, Index n, Index K) {
                                 std::to_string(n) + " states");
   const auto is_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
   if (!memory.means.allFinite() || !memory.covariances.allFinite() || !memory.mode_probability.allFinite() ||
-      memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()) ||
-      !is_positive(memory.noise_scale) || !(memory.noise_samples >= 0.0 && std::isfinite(memory.noise_samples)))
+      memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()))
     throw std::invalid_argument("the snapshot has a number that is not finite or out of range");
   for (Index k = 0; k < K; ++k)
     if (!is_covariance(memory.covariances.col(k).reshaped(n, n)))
@@ -46,13 +45,12 @@ void check_memory(const DriftState& drift, const DriftState& own) {
     });
   };
   if (drift.theta.rows() != own.theta.rows() || drift.theta.cols() != own.theta.cols() || !same(drift.P, own.P) ||
-      !same(drift.cross, own.cross) || drift.variance.size() != own.variance.size())
-    throw std::invalid_argument("the snapshot is from a filter with other drifting modes");
-  const auto finite = [](const Eigen::MatrixXd& x) { return x.allFinite(); };
+      drift.variance.size() != own.variance.size() || drift.level.size() != own.level.size())
+    throw std::invalid_argument("the snapshot is from a filter with other drifting coefficients");
   const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
   if (!drift.theta.allFinite() || !std::all_of(drift.P.begin(), drift.P.end(), variances) ||
-      !std::all_of(drift.cross.begin(), drift.cross.end(), finite) || !drift.variance.allFinite() ||
-      (drift.variance.array() <= 0.0).any())
+      !drift.variance.allFinite() || (drift.variance.array() <= 0.0).any() || !drift.level.allFinite() ||
+      (drift.level.array() < 0.0).any() || (drift.level.size() > 0 && drift.level.sum() <= 0.0))
     throw std::invalid_argument("the snapshot has drift values that are not finite or out of range");
 }
 
@@ -90,7 +88,8 @@ struct BankFilter::Parts : FilterShell {
     combined.observe(C, estimate.prediction, estimate.innovation_covariance, measurement);
     estimate.innovation = combined.innovation;
     estimate.nis = combined.nis;
-    stepper->transform(measurement, estimate.pit, estimate.pit_width);
+    const double of_intervals = stepper->transform(measurement, estimate.pit, estimate.pit_width);
+    if (!std::isnan(of_intervals)) estimate.log_density = of_intervals;
   }
 
   void record_posterior() {

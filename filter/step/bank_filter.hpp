@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/equations/drift_state.hpp"
+#include "filter/step/drift_rates.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "modebank/filter/options.hpp"
 
@@ -32,9 +32,7 @@ struct FilterMemory {
   Eigen::MatrixXd means;             ///< n x K
   Eigen::MatrixXd covariances;       ///< n*n x K
   Eigen::VectorXd mode_probability;  ///< K
-  double noise_scale = 1.0;
-  double noise_samples = 0.0;  ///< discounted number of samples that determine the noise scale
-  DriftState drift = {};       ///< drift state of modes that drift; empty for other modes
+  DriftState drift = {};             ///< of a mode that drifts (DriftingRecursion); empty otherwise
 };
 
 /// The complete state of a BankFilter, for continuing later.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "modebank/filter/wandering.hpp"
 
@@ -21,14 +22,23 @@ struct GridTuning {
   Eigen::Index samples = 0;  ///< number of scored training samples
 };
 
-/// Drift of the coefficients of a bank's modes within a run (equations/drift.hpp); v is each mode's Q.
+/// Drift of the coefficients of the competitor `drifting` within a run (DriftingRecursion).
 struct BankDrift {
   DriftRates rates = {};
   Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
-  Wandering wandering = Wandering::all;  ///< which coefficients drift; a value other than `all` requires running noise
+  Wandering wandering = Wandering::all;  ///< which coefficients drift
   GridTuning tuning = {};                ///< how the competitor `drifting` was tuned
 
   bool empty() const { return scale.size() == 0; }
+};
+
+/// Estimates of a mode that drifts, with J noise levels (running_noise.hpp).
+struct DriftState {
+  Eigen::MatrixXd theta = {};           ///< (r n) x J, coefficients of scaled regressors
+  std::vector<Eigen::MatrixXd> P = {};  ///< J n matrices r x r (lower triangles), output by output within a level;
+                                        ///< divided by the output's variance
+  Eigen::VectorXd variance = {};        ///< n, running noise variance v
+  Eigen::VectorXd level = {};           ///< J, probabilities of the levels
 };
 
 }  // namespace modebank

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <utility>
 
-#include "filter/step/drifting_recursion.hpp"
 #include "filter/step/equations/bounds.hpp"
 #include "ident/base/linalg.hpp"
 
@@ -32,28 +31,66 @@ Eigen::MatrixXd contracted(const LinearStructure& s, const Eigen::VectorXd& scal
 DriftingForecast::DriftingForecast(const Bank& bank)
     : structure_(bank.structure),
       rates_(bank.drift.rates),
+      running_(bank.running_noise),
+      quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd::Zero(structure_.states)),
       scale_(bank.drift.scale),
       inverse_scale_(scale_.cwiseInverse()),
       theta0_(scaled_coefficients(structure_, bank.theta(0), scale_)),
       stable_theta0_(contracted(structure_, scale_, theta0_)),
+      P_(static_cast<std::size_t>(structure_.states)),
       h_(structure_.regressors()),
       direction_(wandering_direction(bank)),
+      Z_(static_cast<std::size_t>(running_.levels())),
       cross_(static_cast<std::size_t>(structure_.states)),
-      next_cross_(cross_) {}
+      next_cross_(cross_),
+      of_theta_(structure_.states) {}
 
-void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin) {
+/// Mean and covariance of theta at the origin, of all levels together.
+void DriftingForecast::merge_levels(const DriftState& origin) {
   const LinearStructure& s = structure_;
-  origin_ = std::move(origin);
+  const Eigen::VectorXd mean = origin.theta * origin.level;
+  deviation_ = mean.reshaped(s.regressors(), s.states) - theta0_;
+  for (Index i = 0; i < s.states; ++i) {
+    Eigen::MatrixXd& P = P_[static_cast<std::size_t>(i)];
+    P.setZero(s.regressors(), s.regressors());
+    for (Index j = 0; j < origin.level.size(); ++j) {
+      const Eigen::VectorXd away = (origin.theta.col(j) - mean).segment(i * s.regressors(), s.regressors());
+      P += origin.level(j) * origin.P[static_cast<std::size_t>(j * s.states + i)];
+      P += origin.level(j) / origin.variance(i) * away * away.transpose();
+    }
+  }
+}
+
+void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin) {
+  const LinearStructure& s = structure_;
+  merge_levels(origin);
+  v_ = origin.variance;
+  level_ = origin.level;
   z_ = z;
   towards_ = theta0_;
-  deviation_ = origin_.theta.reshaped(s.regressors(), s.states) - theta0_;
   of_origin_ = 1.0;
   of_drift_ = 0.0;
-  Z_.setZero(s.dimension(), s.dimension());
+  for (Eigen::MatrixXd& Z : Z_) Z.setZero(s.dimension(), s.dimension());
   for (Eigen::MatrixXd& C : cross_) C.setZero(s.regressors(), s.dimension());
   next_Z_ = Z_;
   next_cross_ = cross_;
   steps_ = 0;
+}
+
+/// The levels switch. They differ only in the covariance of the lagged errors.
+void DriftingForecast::mix() {
+  if (running_.level.size() == 0) return;
+  const Eigen::VectorXd before = level_;
+  level_ = (running_.switching.transpose() * before).cwiseMax(mode_probability_floor);
+  level_ /= level_.sum();
+  for (Index j = 0; j < level_.size(); ++j) {
+    Eigen::VectorXd weight = before.cwiseProduct(running_.switching.col(j)).cwiseMax(impossible_probability);
+    weight /= weight.sum();
+    Eigen::MatrixXd& mixed = next_Z_[static_cast<std::size_t>(j)];
+    mixed.setZero();
+    for (Index i = 0; i < level_.size(); ++i) mixed += weight(i) * Z_[static_cast<std::size_t>(i)];
+  }
+  std::swap(Z_, next_Z_);
 }
 
 void DriftingForecast::pass_time() {
@@ -71,6 +108,7 @@ void DriftingForecast::step(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
     towards_ = stable_theta0_;
   }
   theta_ = towards_ + deviation_;
+  mix();
   predict_mean(inputs);
   propagate_errors();
   push();
@@ -88,47 +126,65 @@ void DriftingForecast::propagate_errors() {
   const Index n = structure_.states, dimension = structure_.dimension();
   of_lagged_ = (inverse_scale_.head(dimension).asDiagonal() * theta_.topRows(dimension)).transpose();
   of_lagged_.leftCols(n).diagonal().array() += 1.0;
-  with_lagged_.noalias() = of_lagged_ * Z_;
   through_.resize(n, dimension);
   for (Index i = 0; i < n; ++i) through_.row(i).noalias() = h_.transpose() * cross_[static_cast<std::size_t>(i)];
+  for (Index i = 0; i < n; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    Eigen::VectorXd Ph = P_[at].selfadjointView<Eigen::Lower>() * h_;
+    if (direction_.size() == 0)
+      Ph = of_origin_ * Ph + of_drift_ * h_;
+    else
+      Ph = of_origin_ * Ph + of_drift_ * direction_.col(i).dot(h_) * direction_.col(i);
+    of_theta_(i) = std::max(0.0, h_.dot(Ph));
+    Eigen::MatrixXd& next = next_cross_[at];
+    next.leftCols(n).noalias() = cross_[at] * of_lagged_.transpose();
+    next.col(i) += v_(i) * Ph;
+    next.rightCols(dimension - n) = cross_[at].leftCols(dimension - n);
+  }
+  for (std::size_t j = 0; j < Z_.size(); ++j) propagate_level(j);
+  std::swap(Z_, next_Z_);
+  std::swap(cross_, next_cross_);
+}
+
+void DriftingForecast::propagate_level(std::size_t level) {
+  const Index n = structure_.states, lagged = structure_.dimension() - n;
+  const Eigen::MatrixXd& Z = Z_[level];
+  with_lagged_.noalias() = of_lagged_ * Z;
   covariance_.noalias() = with_lagged_ * of_lagged_.transpose();
   const Eigen::MatrixXd mixed = through_ * of_lagged_.transpose();
   covariance_ += mixed + mixed.transpose();
   with_lagged_ += through_;
   for (Index i = 0; i < n; ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    Eigen::VectorXd Ph = origin_.P[at].selfadjointView<Eigen::Lower>() * h_;
-    if (direction_.size() == 0)
-      Ph = of_origin_ * Ph + of_drift_ * h_;
-    else
-      Ph = of_origin_ * Ph + of_drift_ * direction_.col(i).dot(h_) * direction_.col(i);
-    covariance_(i, i) += origin_.variance(i) * (1.0 + std::max(0.0, h_.dot(Ph)));
-    Eigen::MatrixXd& next = next_cross_[at];
-    next.leftCols(n).noalias() = cross_[at] * of_lagged_.transpose();
-    next.col(i) += origin_.variance(i) * Ph;
-    next.rightCols(dimension - n) = cross_[at].leftCols(dimension - n);
+    const double noise = running_.level.size() == 0 ? 1.0 : running_.level(i, static_cast<Index>(level)),
+                 rounding = Z_.size() == 1 ? 0.0 : quantum_(i) * quantum_(i) / 12.0 / v_(i);
+    covariance_(i, i) += v_(i) * (std::max(noise, rounding) + of_theta_(i));
   }
+  Eigen::MatrixXd& next = next_Z_[level];
+  next.topLeftCorner(n, n) = covariance_;
+  next.topRightCorner(n, lagged) = with_lagged_.leftCols(lagged);
+  next.bottomLeftCorner(lagged, n) = with_lagged_.leftCols(lagged).transpose();
+  next.bottomRightCorner(lagged, lagged) = Z.topLeftCorner(lagged, lagged);
 }
 
 void DriftingForecast::push() {
-  const Index n = structure_.states, lagged = structure_.dimension() - n;
-  next_Z_.topLeftCorner(n, n) = covariance_;
-  next_Z_.topRightCorner(n, lagged) = with_lagged_.leftCols(lagged);
-  next_Z_.bottomLeftCorner(lagged, n) = with_lagged_.leftCols(lagged).transpose();
-  next_Z_.bottomRightCorner(lagged, lagged) = Z_.topLeftCorner(lagged, lagged);
-  std::swap(Z_, next_Z_);
-  std::swap(cross_, next_cross_);
+  const Index n = structure_.states;
   for (Index i = z_.size() - 1; i >= n; --i) z_(i) = z_(i - n);
   z_.head(n) = prediction_;
 }
 
+Eigen::MatrixXd DriftingForecast::state_covariance() const {
+  Eigen::MatrixXd sum = level_(0) * Z_[0];
+  for (std::size_t j = 1; j < Z_.size(); ++j) sum += level_(static_cast<Index>(j)) * Z_[j];
+  return sum;
+}
+
 /// Limits diverging values, as in other filters.
 void DriftingForecast::bound() {
-  const double largest = Z_.diagonal().maxCoeff();
+  double largest = 0.0;
+  for (const Eigen::MatrixXd& Z : Z_) largest = std::max(largest, Z.diagonal().maxCoeff());
   if (!(largest > largest_variance)) return;
   const double shrink = std::isfinite(largest) ? largest_variance / largest : 0.0;
-  Z_ *= shrink;
-  covariance_ *= shrink;
+  for (Eigen::MatrixXd& Z : Z_) Z *= shrink;
   for (Eigen::MatrixXd& C : cross_) C *= std::sqrt(shrink);
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/equations/drift_state.hpp"
+#include "filter/step/drifting_recursion.hpp"
 
 namespace modebank {
 
@@ -21,40 +21,56 @@ namespace modebank {
 ///   d[j] = leak d[j-1] + w,  cov(w) = q v W.
 /// phi are the coefficients of the lagged samples. v and the joint covariance of d and the lagged e start with their
 /// values at the origin.
+///
+/// Noise levels (running_noise.hpp) go on switching: each has its own covariance of the lagged e, and these are mixed
+/// before each step, as in the filter. theta has one Gaussian, the mixture of the levels at the origin, so all levels
+/// have one mean.
 class DriftingForecast {
  public:
   explicit DriftingForecast(const Bank& bank);
 
   /// The filter's z and coefficients after a sample (DriftingRecursion).
-  void start(const Eigen::Ref<const Eigen::VectorXd>& z, DriftState origin);
+  void start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n
-  const Eigen::MatrixXd& covariance() const { return covariance_; }  ///< n x n, covariance of the prediction's error
-  const Eigen::VectorXd& state() const { return z_; }                ///< the prediction and the preceding samples
-  const Eigen::MatrixXd& state_covariance() const { return Z_; }
+  /// n x n, covariance of the prediction's error, with all levels combined or in one of them.
+  Eigen::MatrixXd covariance() const { return state_covariance().topLeftCorner(structure_.states, structure_.states); }
+  auto covariance(Eigen::Index level) const {
+    return Z_[static_cast<std::size_t>(level)].topLeftCorner(structure_.states, structure_.states);
+  }
+  const Eigen::VectorXd& level_probability() const { return level_; }  ///< J, of the prediction
+  const Eigen::VectorXd& state() const { return z_; }                  ///< the prediction and the preceding samples
+  Eigen::MatrixXd state_covariance() const;
 
  private:
   LinearStructure structure_;
   DriftRates rates_;
+  RunningNoise running_;
+  Eigen::VectorXd quantum_;  ///< n; 0 for a continuous signal
   Eigen::VectorXd scale_, inverse_scale_;
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, coefficients of scaled regressors
-  DriftState origin_;
+  std::vector<Eigen::MatrixXd> P_;          ///< n matrices r x r, covariances of theta at the origin, divided by v
+  Eigen::VectorXd v_, level_;               ///< sizes: n, J
   Eigen::VectorXd z_, h_, prediction_;
   Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: value towards which coefficients leak, and the
                                                      ///< difference from it
   Eigen::MatrixXd direction_;                        ///< r x n, direction of the drift; empty if all coefficients drift
   double of_origin_ = 1.0, of_drift_ = 0.0;          ///< cov(d) / v = of_origin P + of_drift W
-  Eigen::MatrixXd Z_, next_Z_;                       ///< covariance of the lagged errors
+  std::vector<Eigen::MatrixXd> Z_, next_Z_;          ///< per level: covariance of the lagged errors
   std::vector<Eigen::MatrixXd> cross_, next_cross_;  ///< per output r x dimension: covariance of d with the lagged
                                                      ///< errors
-  Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< sizes: n x n, n x dimension, n x dimension
+  Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< of one level; sizes: n x n, n x dimension, n x dimension
+  Eigen::VectorXd of_theta_;                            ///< n, variance of the prediction due to d, divided by v
   Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi of each output
   int steps_ = 0;
 
+  void merge_levels(const DriftState& origin);
+  void mix();
   void pass_time();
   void predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs);
   void propagate_errors();
+  void propagate_level(std::size_t level);
   void push();
   void bound();
 };

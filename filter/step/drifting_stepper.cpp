@@ -11,29 +11,12 @@ using Eigen::Index;
 
 DriftingStepper::DriftingStepper(const Bank& bank)
     : recursion_(bank),
-      noise_(bank.running_noise.nu),
+      weight_(bank.running_noise.levels()),
       quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd::Zero(bank.structure.states)) {}
 
 void DriftingStepper::skip(const Vector& v) {
   recursion_.predict(v);
   recursion_.skip();
-}
-
-double DriftingStepper::update(const Vector& y) {
-  recursion_.update(y);
-  double log_density = not_a_number;
-  for (Index i = 0; i < quantum_.size(); ++i) {
-    const double e = recursion_.innovation()(i), variance = recursion_.variance()(i);
-    if (std::isnan(e)) continue;
-    if (std::isnan(log_density)) log_density = 0.0;
-    if (quantum_(i) > 0.0) {
-      const double half = 0.5 * quantum_(i);
-      log_density += noise_.log_mass((e - half) / deviation(i), (e + half) / deviation(i)) - std::log(quantum_(i));
-    } else {
-      log_density += noise_.log_density(e * e / variance) - 0.5 * std::log(variance);
-    }
-  }
-  return log_density;
 }
 
 void DriftingStepper::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
@@ -44,16 +27,21 @@ void DriftingStepper::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eige
   innovation_covariance.diagonal() = recursion_.variance();
 }
 
-void DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {
+double DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {
   for (Index i = 0; i < quantum_.size(); ++i) {
-    const double e = recursion_.innovation()(i), half = 0.5 * quantum_(i);
-    pit(i) = std::isnan(e) ? not_a_number : noise_.probability(e / deviation(i));
-    if (std::isnan(e) || half == 0.0) continue;
-    const double low = noise_.probability((e - half) / deviation(i)),
-                 high = noise_.probability((e + half) / deviation(i));
+    const double half = 0.5 * quantum_(i);
+    pit(i) = not_a_number;
+    if (std::isnan(recursion_.innovation()(i))) continue;
+    recursion_.weigh_levels(i, weight_);
+    pit(i) = recursion_.probability(i, 0.0, weight_);
+    if (std::isnan(pit(i))) pit(i) = 1.0;  // outside all bands if the prediction failed
+    if (half == 0.0) continue;
+    const double low = recursion_.probability(i, -half, weight_), high = recursion_.probability(i, half, weight_);
+    if (std::isnan(high - low)) continue;
     pit(i) = 0.5 * (low + high);
     width(i) = high - low;
   }
+  return not_a_number;  // `update` has returned the masses
 }
 
 void DriftingStepper::merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) {

@@ -49,20 +49,15 @@ template <int N, int NY>
 class BankForecast {
  public:
   explicit BankForecast(const FilterModel<N, NY>& model)
-      : model_(model),
-        step_(model),
-        state_(initial_state(model)),
-        posterior_(step_.predicted_probability.size()),
-        unused_(model.structure.dimension()) {}
+      : model_(model), step_(model), state_(initial_state(model)), posterior_(step_.predicted_probability.size()) {}
 
   void start(const FilterState<N>& origin) {
     state_ = origin;
-    ahead_ = contracted_ = false;
+    ahead_ = false;
   }
   template <class U>
   void step(const U& inputs) {
-    if (ahead_) skip_measurement(model_, step_, state_);
-    if (ahead_ && !contracted_) contract();
+    if (ahead_) skip_measurement(step_, state_);
     predict(model_, state_, inputs, step_);
     ahead_ = true;
   }
@@ -91,24 +86,20 @@ class BankForecast {
     error = y;
     for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
       const auto i = static_cast<Eigen::Index>(h);
-      if (model_.quantised)
-        correct_intervals(model_, y, step_.kalman[h], unused_);
-      else
-        step_.kalman[h].observe(model_, y);
-      step_.log_likelihood(i) = step_.kalman[h].log_density;
+      step_.kalman[h].observe(model_, y);
+      step_.log_likelihood(i) = log_density(step_.kalman[h]);
       error -= step_.predicted_probability(i) * (y - step_.kalman[h].innovation);
     }
     return bayes(step_.predicted_probability, step_.log_likelihood, posterior_);
   }
 
-  /// Distribution of signal i, whatever the other signals are. The rounding of a recorded value widens it.
+  /// Distribution of signal i, whatever the other signals are.
   NormalMixture signal(Eigen::Index i) const {
     NormalMixture result{step_.predicted_probability, step_.predicted_probability, step_.predicted_probability};
-    const double rounding = model_.quantum(i) * model_.quantum(i) / 12.0;
     for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
       const auto j = static_cast<Eigen::Index>(h);
       result.mean(j) = model_.C.row(i).dot(step_.kalman[h].predicted.mean);
-      result.deviation(j) = std::sqrt(std::max(step_.kalman[h].innovation_covariance(i, i) + rounding, least_variance));
+      result.deviation(j) = std::sqrt(std::max(step_.kalman[h].innovation_covariance(i, i), least_variance));
     }
     return result;
   }
@@ -118,18 +109,15 @@ class BankForecast {
   FilterStep<N, NY> step_;
   FilterState<N> state_;
   Eigen::VectorXd posterior_;
-  Gaussian<N> unused_;
-  bool ahead_ = false, contracted_ = false;
+  bool ahead_ = false;
 
-  /// Contracts coefficients that drifted to unstable values. Such coefficients predict one step well but diverge over
-  /// many steps. DriftingForecast uses the same method.
-  void contract() {
-    contracted_ = true;
-    const LinearStructure& s = model_.structure;
-    if (!model_.drift.on()) return;
-    const Eigen::VectorXd units = Eigen::VectorXd::Ones(s.regressors());
-    for (auto theta : state_.drift.theta.colwise())
-      theta = contracted(s, units, theta.reshaped(s.regressors(), s.states)).reshaped();
+  /// Log density of the observed measurement in one mode, with the masses of intervals for rounded signals.
+  double log_density(const KalmanStep<N, NY>& mode) const {
+    if (model_.quantum.size() == 0) return mode.log_density;
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < model_.quantum.size(); ++i)
+      sum += ModeSignal{mode.decorrelated(i), mode.cholesky.D(i)}.log_density(model_.quantum(i));
+    return sum;
   }
 };
 

@@ -1,12 +1,207 @@
 #include "filter/step/likelihood_gradient.hpp"
 
-#include "filter/step/dense_gradient.hpp"
-#include "filter/step/detail/vector/vector_gradient.hpp"
+#include <algorithm>
+#include <utility>
+#include <vector>
+
+#include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
 namespace modebank {
+namespace {
 
-using Eigen::Index;
+using Eigen::Index, Eigen::MatrixXd, Eigen::VectorXd;
+
+template <class Matrix>
+auto symmetric_part(const Matrix& M) {
+  return (0.5 * (M + M.transpose())).eval();
+}
+
+/// Derivatives with respect to the filter's state: the estimate of each mode, and the probabilities.
+template <int N>
+struct ByState {
+  std::vector<Gaussian<N>> modes;
+  VectorXd probability;
+
+  ByState(Index n, Index K) : modes(static_cast<std::size_t>(K), Gaussian<N>(n)), probability(VectorXd::Zero(K)) {}
+  void clear() {
+    for (Gaussian<N>& mode : modes) mode = Gaussian<N>(mode.mean.size());
+    probability.setZero();
+  }
+};
+
+/// Stores the state before each moment of a stretch. Before going back over a stretch that is not the last, it is
+/// filtered again.
+template <int N, int NY>
+class ReversePass {
+  using StateVector = Eigen::Matrix<double, N, 1>;
+  using StateMatrix = Eigen::Matrix<double, N, N>;
+  using SignalMatrix = Eigen::Matrix<double, NY, NY>;
+  using Gain = Eigen::Matrix<double, N, NY>;
+
+ public:
+  ReversePass(const Bank& bank, const Trajectory& run, const FilterOptions& options)
+      : run_(run),
+        model_(bank, options),
+        instants_(bank, run),
+        step_(model_),
+        after_(initial_state(model_)),
+        stretch_length_(stretch_length(bank)),
+        by_(bank.structure.dimension(), bank.mode_count()),
+        by_before_(by_),
+        by_weight_(bank.mode_count(), bank.mode_count()) {
+    const Index n = bank.structure.dimension(), K = bank.mode_count();
+    for (const Mode& mode : bank.modes)
+      sum_.modes.push_back(
+          {{MatrixXd::Zero(n, n), MatrixXd::Zero(n, mode.model.B.cols()), VectorXd::Zero(n)}, MatrixXd::Zero(n, n)});
+    sum_.R = MatrixXd::Zero(bank.R.rows(), bank.R.cols());
+    sum_.transition = MatrixXd::Zero(K, K);
+    sum_.start_covariance = MatrixXd::Zero(n, n);
+  }
+
+  BankGradient go_back() {
+    std::vector<FilterState<N>> kept;  // state before each stretch of moments
+    for (Index first = 0; first < instants_.count(); first += stretch_length_) {
+      kept.push_back(after_);
+      follow_stretch(first);
+    }
+    for (Index s = std::ssize(kept); s-- > 0;) {
+      const Index first = s * stretch_length_, end = std::min(first + stretch_length_, instants_.count());
+      if (end < instants_.count()) {
+        after_ = kept[static_cast<std::size_t>(s)];
+        follow_stretch(first);
+      }
+      for (Index t = end; t-- > first;) back_over(t, before_[static_cast<std::size_t>(t - first)]);
+    }
+    return std::move(sum_);
+  }
+
+ private:
+  const Trajectory& run_;
+  FilterModel<N, NY> model_;
+  RunInstants instants_;
+  FilterStep<N, NY> step_;
+  FilterState<N> after_;  ///< after the present moment
+  Index stretch_length_;
+  std::vector<FilterState<N>> before_;  ///< before each moment of a stretch
+  ByState<N> by_, by_before_;           ///< derivatives of all later moments
+  VectorXd by_prior_;                   ///< derivatives with respect to the mode probabilities before the measurement
+  MatrixXd by_weight_;                  ///< K x K
+  BankGradient sum_;
+
+  /// States of a stretch take 64 MB, but a stretch has at least a hundred moments.
+  static Index stretch_length(const Bank& bank) {
+    const Index n = bank.structure.dimension();
+    return std::max<Index>(100, 8'000'000 / (bank.mode_count() * (n * n + n + 16)));
+  }
+
+  /// Filters a stretch of moments from `after_` on.
+  void follow_stretch(Index first) {
+    before_.clear();
+    for (Index t = first; t < std::min(first + stretch_length_, instants_.count()); ++t) {
+      before_.push_back(after_);
+      step_to(model_, instants_, t, run_, after_, step_);
+    }
+  }
+
+  void back_over(Index t, const FilterState<N>& before) {
+    const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
+    if (instant.starts) {  // the mean at the start is the measurement itself
+      for (const Gaussian<N>& mode : by_.modes) sum_.start_covariance += mode.covariance;
+      return by_.clear();
+    }
+    after_ = before;
+    by_prior_ = by_.probability;
+    if (step_to(model_, instants_, t, run_, after_, step_))
+      back_over_measurement(run_.state.col(instant.sample), after_.mode_probability);
+    const bool one = model_.mode_count() == 1;
+    for (std::size_t j = 0; j < by_.modes.size(); ++j)
+      back_over_motion(j, one ? before.modes[0] : step_.mixed[j], instants_.inputs.col(t));
+    if (!one) back_over_mixing(before);
+  }
+
+  /// Goes back over Bayes' rule and the update of every mode. Converts derivatives with respect to the estimates into
+  /// derivatives with respect to the predictions.
+  template <class Y>
+  void back_over_measurement(const Y& y, const VectorXd& posterior) {
+    const VectorXd by_log = posterior.array() * (1.0 + by_.probability.array() - by_.probability.dot(posterior));
+    by_prior_ = (step_.predicted_probability.array() >= impossible_probability)
+                    .select(by_log.cwiseQuotient(step_.predicted_probability), 0.0);
+    SignalMatrix by_R = SignalMatrix::Zero(y.size(), y.size());
+    for (std::size_t j = 0; j < by_.modes.size(); ++j)
+      by_R += back_over_update(step_.partial.missing > 0 ? step_.partial.C : model_.C, step_.kalman[j],
+                               by_log(static_cast<Index>(j)), by_.modes[j]);
+    for (Index i = 0; i < y.size(); ++i)  // R of a missing signal is not a parameter of the bank
+      if (is_missing(y(i))) {
+        by_R.row(i).setZero();
+        by_R.col(i).setZero();
+      }
+    sum_.R += by_R;
+  }
+
+  /// Goes back over m = x + K e, P' = (I - K C) P with K = P C' S^-1 and S = C P C' + R, and over log N(e; 0, S).
+  /// Returns the derivative with respect to R.
+  static SignalMatrix back_over_update(const Eigen::Matrix<double, NY, N>& C, const KalmanStep<N, NY>& kalman,
+                                       double by_density, Gaussian<N>& by) {
+    SignalMatrix inverse = SignalMatrix::Identity(C.rows(), C.rows());
+    for (Index i = 0; i < C.rows(); ++i) kalman.cholesky.solve(inverse.col(i));
+    const Gain gain = kalman.predicted.covariance * C.transpose() * inverse;
+    const StateMatrix kept = StateMatrix::Identity(C.cols(), C.cols()) - gain * C;
+    const Eigen::Matrix<double, NY, 1> scaled = inverse * kalman.innovation;
+    const StateVector back = C.transpose() * scaled, through = kept.transpose() * by.mean;
+    const SignalMatrix by_S = 0.5 * by_density * (scaled * scaled.transpose() - inverse);
+    const SignalMatrix by_R = by_S + gain.transpose() * by.covariance * gain -
+                              symmetric_part((gain.transpose() * by.mean * scaled.transpose()).eval());
+    by.covariance = (kept.transpose() * by.covariance * kept + symmetric_part((through * back.transpose()).eval()) +
+                     C.transpose() * by_S * C)
+                        .eval();
+    by.mean = through + by_density * back;
+    return by_R;
+  }
+
+  /// Goes back over x = F m + B u + c and P' = F P F' + Q.
+  template <class U>
+  void back_over_motion(std::size_t j, const Gaussian<N>& from, const U& u) {
+    const StateMatrix& F = model_.modes[j].F;
+    Gaussian<N>& by = by_.modes[j];
+    BankGradient::Mode& sum = sum_.modes[j];
+    sum.model.A += by.mean * from.mean.transpose() + 2.0 * by.covariance * F * from.covariance;
+    sum.model.B += by.mean * u.transpose();
+    sum.model.c += by.mean;
+    sum.Q += by.covariance;
+    by.mean = (F.transpose() * by.mean).eval();
+    by.covariance = (F.transpose() * by.covariance * F).eval();
+  }
+
+  /// Goes back over the mixing. Every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
+  /// (The derivative of the mixture's covariance with respect to its mean is zero.)
+  void back_over_mixing(const FilterState<N>& before) {
+    const Index K = model_.mode_count();
+    by_before_.clear();
+    for (Index j = 0; j < K; ++j)
+      for (Index i = 0; i < K; ++i) {
+        const Gaussian<N>& from = before.modes[static_cast<std::size_t>(i)];
+        const Gaussian<N>& to = by_.modes[static_cast<std::size_t>(j)];
+        const StateVector off = from.mean - step_.mixed[static_cast<std::size_t>(j)].mean, by_off = to.covariance * off;
+        const double weight = step_.mixing.matrix(i, j);
+        Gaussian<N>& sum = by_before_.modes[static_cast<std::size_t>(i)];
+        sum.mean += weight * (to.mean + 2.0 * by_off);
+        sum.covariance += weight * to.covariance;
+        by_weight_(i, j) = to.mean.dot(from.mean) + to.covariance.cwiseProduct(from.covariance).sum() + off.dot(by_off);
+      }
+    const VectorXd& prior = step_.predicted_probability;
+    for (Index j = 0; j < K; ++j) {
+      if (prior(j) < impossible_probability) continue;
+      const double mean_by_weight = by_weight_.col(j).dot(step_.mixing.matrix.col(j));
+      const auto by_pair = ((by_weight_.col(j).array() - mean_by_weight) / prior(j) + by_prior_(j)).matrix();
+      sum_.transition.col(j) += by_pair.cwiseProduct(before.mode_probability);
+      by_before_.probability += by_pair.cwiseProduct(model_.transition.matrix().col(j));
+    }
+    std::swap(by_, by_before_);
+  }
+};
+
+}  // namespace
 
 BankGradient& BankGradient::operator+=(const BankGradient& other) {
   for (std::size_t j = 0; j < modes.size(); ++j) {
@@ -22,9 +217,7 @@ BankGradient& BankGradient::operator+=(const BankGradient& other) {
 }
 
 double BankGradient::along(const Bank& from, const Bank& to) const {
-  const auto change = [](const Eigen::MatrixXd& by, const auto& a, const auto& b) {
-    return by.cwiseProduct(b - a).sum();
-  };
+  const auto change = [](const MatrixXd& by, const auto& a, const auto& b) { return by.cwiseProduct(b - a).sum(); };
   double sum = change(R, from.R, to.R) + change(transition, from.transition.matrix(), to.transition.matrix()) +
                change(start_covariance, start_moments(from).covariance, start_moments(to).covariance);
   for (std::size_t j = 0; j < modes.size(); ++j) {
@@ -36,20 +229,14 @@ double BankGradient::along(const Bank& from, const Bank& to) const {
 }
 
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options) {
-  return VectorGradient::can_step(bank, options) || has_dense_gradient(bank, options);
+  return (options.variant == FilterVariant::imm || (options.variant == FilterVariant::kf && bank.mode_count() == 1)) &&
+         bank.transition_logit.empty() && bank.terms.empty() && bank.noise_factor.empty();
 }
 
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
-  if (!VectorGradient::can_step(bank, options)) return dense_gradient(bank, run, options);
-  VectorGradient gradient(bank, options);
-  gradient.reserve(run.samples());
-  RunSamples(bank, run).for_each([&](const SampleFeed& feed, Index k, bool starts) {
-    if (starts) return gradient.start(feed.start());
-    for (Index i = 1; i < feed.steps(); ++i) gradient.skip(feed.inputs());
-    gradient.step(feed.inputs(), run.state.col(k));
-  });
-  return gradient.go_back();
+  return with_sizes(bank.structure.dimension(), bank.C.rows(),
+                    [&]<int N, int NY>() { return ReversePass<N, NY>(bank, run, options).go_back(); });
 }
 
 }  // namespace modebank

@@ -1,16 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <utility>
 #include <vector>
 
 namespace modebank {
 
 /// Noise of one motion. The variance follows each output separately (method: section 6, `drifting`). e is a prediction
-/// error with Student's t distribution of variance v (1 + h'Ph). P is the covariance of the coefficients divided by v.
-/// At a start, v is the diagonal of Q. Then
-///   v <- max(lam v + (1 - lam) e^2 / (1 + h'Ph), floor).
-/// Given the past, outputs are independent.
+/// error with Student's t distribution of variance v (s + h'Ph). P is the covariance of the coefficients divided by v.
+/// s is the noise level: 1, or one of J levels between which the noise switches by a Markov chain. At a start, v is the
+/// diagonal of Q. Then, with the probabilities mu of the levels after the sample,
+///   v <- max(lam v + (1 - lam) sum_j mu_j e_j^2 / (s_j + h'P_j h), floor).
+/// Given the past and the level, outputs are independent.
 struct RunningNoise {
   double lam = 0.9;            ///< forgetting factor of the running variance, in [0, 1]
   double nu = 0.0;             ///< degrees of freedom, above 2; 0 for a normal distribution
@@ -20,7 +22,11 @@ struct RunningNoise {
   /// ahead the factor is 1, because the prediction is that of the filter.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
+  Eigen::MatrixXd level = {};      ///< n x J, variance of each level in units of v; if empty, one level of 1
+  Eigen::MatrixXd switching = {};  ///< J x J, row i: probabilities of the next level after level i
+
   bool empty() const { return floor.size() == 0; }
+  Eigen::Index levels() const { return std::max<Eigen::Index>(level.cols(), 1); }
   /// The factor of the longest horizon that is not above this one; 1 if every horizon is above it.
   double factor_at(Eigen::Index horizon) const {
     double factor = 1.0;

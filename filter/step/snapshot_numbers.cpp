@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double numbers_format = 2.0;
+constexpr double numbers_format = 3.0;
 
 /// Calls part(x) for every part of a snapshot, in the order of the numbers.
 template <class Snapshot, class Part>
@@ -19,12 +19,10 @@ void for_each_part(Snapshot& snapshot, Part part) {
   part(snapshot.means);
   part(snapshot.covariances);
   part(snapshot.mode_probability);
-  part(snapshot.noise_scale);
-  part(snapshot.noise_samples);
   part(snapshot.drift.theta);
   part(snapshot.drift.P);
-  part(snapshot.drift.cross);
   part(snapshot.drift.variance);
+  part(snapshot.drift.level);
   part(snapshot.samples.inputs);
   part(snapshot.samples.measurements);
   part(snapshot.samples.samples);

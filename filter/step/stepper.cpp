@@ -1,10 +1,10 @@
 #include "filter/step/stepper.hpp"
 
-#include "filter/step/detail/vector/vector_imm.hpp"
 #include "filter/step/drifting_stepper.hpp"
 #include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -25,16 +25,17 @@ class EquationStepper final : public Stepper {
   void predict(const Vector& v) override { modebank::predict(model_, state_, v, step_); }
   void skip(const Vector& v) override {
     modebank::predict(model_, state_, v, step_);
-    skip_measurement(model_, step_, state_);
+    skip_measurement(step_, state_);
   }
   double update(const Vector& y) override { return modebank::update(model_, y, step_, state_); }
 
   void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
     modebank::combine(model_, step_, state, innovation_covariance);
   }
-  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override {
-    if (model_.quantised) return interval_transform(model_, y, step_, weights_, pit, width);
+  double transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override {
+    if (model_.quantum.size() > 0) return interval_transform(model_, y, step_, weights_, pit, width);
     probability_transform(y, step_, weights_, pit);
+    return not_a_number;
   }
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override {
     modebank::merge(state_.modes, state_.mode_probability, moments_);
@@ -61,7 +62,6 @@ class EquationStepper final : public Stepper {
 
 std::unique_ptr<Stepper> make_stepper(const Bank& bank, const FilterOptions& options) {
   if (!bank.running_noise.empty()) return std::make_unique<DriftingStepper>(bank);
-  if (VectorImm::can_step(bank, options)) return std::make_unique<VectorImm>(bank, options);
   return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> std::unique_ptr<Stepper> {
     return std::make_unique<EquationStepper<N, NY>>(bank, options);
   });

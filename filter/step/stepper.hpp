@@ -10,9 +10,8 @@ namespace modebank {
 
 struct FilterMemory;
 
-/// A bank's filter for any size and variant. It uses vector kernels with one mode per lane (detail/vector) if they
-/// exist, else the equations (equations/filter_step.hpp). Both agree up to rounding. Call `start` first. Then call
-/// `advance` and `update` for each sample, or `follow` for many. Allocates only at construction.
+/// A bank's filter for any size and variant (equations/filter_step.hpp). Call `start` first. Then call `advance` and
+/// `update` for each sample, or `follow` for many. Allocates only at construction.
 class Stepper {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
@@ -43,8 +42,9 @@ class Stepper {
   /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`.
   virtual void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
   /// Probability integral transform of y (predicted_mixture.hpp), n_y. Call after `update` with the same y. `width`:
-  /// width of the interval whose middle is `pit`; unchanged if no signal is quantised.
-  virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
+  /// width of the interval whose middle is `pit`; unchanged if no signal is rounded. Returns the log density of the
+  /// intervals; NaN if no signal is rounded.
+  virtual double transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
   /// Moments of the present mixture, n and n x n.
   virtual void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) = 0;
   virtual Eigen::Map<const Eigen::VectorXd> predicted_probability() const = 0;  ///< K

@@ -3,9 +3,8 @@
 #include <numbers>
 #include <stdexcept>
 #include <string>
-#include <utility>
 
-#include "filter/step/truncated_normal.hpp"
+#include "filter/step/interval_mass.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/log_two_pi.hpp"
 
@@ -35,15 +34,14 @@ double StudentNoise::probability(double value) const {
   return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
 }
 
-double StudentNoise::log_mass(double low, double high) const {
-  if (gaussian()) return truncated_normal(low, high).log_mass;
-  if (low + high > 0.0) low = -std::exchange(high, -low);  // the lower tail has more accurate digits
-  const double mass = probability(high) - probability(low), middle = 0.5 * (low + high);
+double StudentNoise::log_mass(double middle, double width) const {
+  if (gaussian()) return log_normal_mass(middle, width);
   // If an interval is narrow compared with its distance from zero, the difference loses digits. The probability is then
   // computed from the density.
   constexpr double narrow = 1e-3;
-  if (high - low < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(high - low);
-  return std::log(mass);
+  if (width < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(width);
+  const double high = 0.5 * width - std::abs(middle);  // the lower tail has more accurate digits
+  return std::log(probability(high) - probability(high - width));
 }
 
 }  // namespace modebank

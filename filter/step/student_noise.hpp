@@ -22,8 +22,8 @@ class StudentNoise {
   }
   /// P(X <= value).
   double probability(double value) const;
-  /// log P(low <= X <= high), with low < high.
-  double log_mass(double low, double high) const;
+  /// log P(|X - middle| <= width / 2), with width > 0.
+  double log_mass(double middle, double width) const;
 
  private:
   double degrees_, log_constant_;

@@ -106,7 +106,6 @@ struct Archive : DataPart, Learning {
 
   /// Whether modes of the bank are components of the mixture. False if the bank was refined or time steps scatter.
   bool mixture_makes_bank() const { return mixture && !unrefined && step_scatter == 0.0; }
-  bool one_motion_drifts() const { return one_motion && !one_motion->drift.empty(); }
 };
 
 /// Writes the archive under a temporary name in the same folder, flushes and closes it, hashes it and renames it. On

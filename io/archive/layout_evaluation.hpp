@@ -36,8 +36,6 @@ void exchange_left_out(Io& io, R& rows, const Unit& states) {
 /// - log_density: log density of the measurement
 /// - mode_probability_predicted: probabilities before the measurement
 /// - mode_probability: probabilities after the measurement
-/// - smoothed_state: estimate given the whole run, with `filter.smooth`
-/// - smoothed_covariance: covariance of `smoothed_state`
 /// - viterbi_mode: the mode in the most probable sequence of modes; -1: before the filter's start
 template <class Io, class E>
 void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
@@ -51,14 +49,7 @@ void exchange_run_evaluation(Io& io, E& evaluation, const Unit& states) {
   io.field("log_density", evaluation.log_density, {"S"}, {"nat"});
   io.field("mode_probability_predicted", evaluation.mode_probability_predicted, {"S", "K"});
   io.field("mode_probability", evaluation.mode_probability, {"S", "K"});
-  io.optional_field("smoothed_state", evaluation.smoothed_state, {"S", "n_y"}, states);
-  io.optional_field("smoothed_covariance", evaluation.smoothed_covariance, {"S", "n_y", "n_y"}, outer(states));
   io.optional_field("viterbi_mode", evaluation.viterbi_mode, {"S"}, {}, rule::position_or_none("K"));
-  if constexpr (Io::reads)
-    io.finish([&] {
-      check_together("smoothed_state and smoothed_covariance",
-                     {evaluation.smoothed_state.rows(), evaluation.smoothed_covariance.rows()});
-    });
 }
 
 /// - free_run_mean: prediction without measurements after the run's start, with `filter.simulate`
@@ -181,6 +172,7 @@ void exchange_free_runs(Io& io, R& rows, const Unit& states) {
 /// - mode: -1: all modes
 /// - dwell: mean length of a visit, by `viterbi_mode` or the most probable mode
 /// - dwell_model: mean length of a visit that the transition matrix gives
+/// - reason: the number that decided the verdict: `band`, `close`, `NIS`, `pattern`, `few samples`; `none`: all pass
 /// - autocorrelation: largest autocorrelation of the standardised innovations
 /// - autocorrelation_lag: lag of the largest autocorrelation
 template <class Io, class R>
@@ -201,8 +193,9 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
       column("too_close", &Row::too_close), column("too_close_lower", &Row::too_close_lower),
       column("too_close_upper", &Row::too_close_upper), column("nis_mean", &Row::nis_mean),
       column("nees_mean", &Row::nees_mean), column("state_rmse", &Row::state_rmse, joined(states)),
-      column("whiteness_p", &Row::whiteness_p), column("verdict", &Row::verdict), column("flags", &Row::flags),
-      column("autocorrelation", &Row::autocorrelation), column("autocorrelation_lag", &Row::autocorrelation_lag));
+      column("whiteness_p", &Row::whiteness_p), column("verdict", &Row::verdict), column("reason", &Row::reason),
+      column("flags", &Row::flags), column("autocorrelation", &Row::autocorrelation),
+      column("autocorrelation_lag", &Row::autocorrelation_lag));
 }
 
 /// /evaluation/evidence: whether held-out runs show evidence for modes.

@@ -21,8 +21,7 @@ Index evaluated_numbers(const Archive& archive) {
   for (const Trajectory& run : archive.recording->runs) samples += run.samples();
   for (const FilterEvaluation& evaluation : archive.evaluations)
     if (!evaluation.runs.empty() && !evaluation.streamed)
-      per_sample += numbers_beside_covariances + evaluation.runs.front().covariance.rows() +
-                    evaluation.runs.front().smoothed_covariance.rows();
+      per_sample += numbers_beside_covariances + evaluation.runs.front().covariance.rows();
   return samples * per_sample;
 }
 

@@ -107,7 +107,7 @@ VectorXd Quanta::decide(const Recording& recording, std::vector<std::string>& no
     quanta = VectorXd::Map(options_.quantum.data(), n);
   if (!(quanta.array() > 0.0).any()) return {};
   if (options_.quantum_auto)
-    notes.push_back(fmt::format("states are rounded ({}), so values count as intervals (data.quantum = auto)",
+    notes.push_back(fmt::format("states are rounded ({}), so R is at least q^2 / 12 (data.quantum = auto)",
                                 told(recording, quanta)));
   return quanta;
 }

@@ -100,7 +100,7 @@ def main():
     parser.add_argument("--first", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count())
     parser.add_argument("--only", default="")
-    parser.add_argument("--quantum", default="none", help="data.quantum: with auto readings that come in steps count as intervals")
+    parser.add_argument("--quantum", default="none", help="data.quantum: with auto R is at least the rounding of readings that come in steps")
     options = parser.parse_args()
     wanted = options.only.split(",") if options.only else [name for systems in GROUPS.values() for name in systems]
     known = {(r["system"], int(r["seed"])) for r in read(options.table) if r["revision"] == options.revision} if options.table else set()

@@ -117,11 +117,6 @@ Answer state_dependent_transition(const Recording& recording) {
   return {r.switching.gain, r.switching.gain_standard_error, !r.bank.transition_logit.empty()};
 }
 
-Answer drift(const Recording& recording) {
-  const Refinement r = refined(recording, [](auto& o) { o.drift = modebank::Drift::automatic; });
-  return {r.drift.gain, r.drift.gain_standard_error, r.drift.taken};
-}
-
 Answer look_ahead(const Recording& recording) {
   const Refinement r = refined(recording, [](auto& o) { o.look_ahead = 10; });
   return {r.look_ahead.score - r.look_ahead.score_before, r.look_ahead.gain_standard_error, r.look_ahead.taken};
@@ -156,7 +151,6 @@ std::vector<Question> questions() {
           {"measurement noise", {0.22, 0.155}, measured, measurement_noise},
           {"noise by input", {0.36, 0.235}, of(noise_follows), noise_by_input},
           {"transitions by state", {0.069, 0.046}, of(border), state_dependent_transition},
-          {"drift", {0.08, 0.057}, of(wandering, 1.0), drift},
           {"look-ahead", {0.094, 0.065}, of(hidden, 1.0), look_ahead}};
 }
 

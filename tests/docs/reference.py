@@ -20,7 +20,7 @@ import archive_layout  # noqa: E402  its folder is added above
 import program  # noqa: E402
 
 SMALL_DEMO = ["--data.label=mode", "--simulate.runs=4", "--simulate.samples=80", "--mixture.components=1..2", "--mixture.restarts=1",
-              "--filter.horizon=1,2", "--filter.simulate=5", "--filter.smooth=true"]
+              "--filter.horizon=1,2", "--filter.simulate=5"]
 README_LINES = 100
 problems = []
 

@@ -55,12 +55,11 @@ inline DiagnosticsRow row_of(const Bank& bank, std::vector<Trajectory> runs, con
     run.role = Role::test;
     evaluations.push_back(evaluate_run(bank, run, options));
   }
-  return diagnose("bank", Role::test, bank, options, runs, evaluations, score_runs(evaluations)).front();
+  return diagnose("bank", Role::test, bank, bank.mode_count() == 1, runs, evaluations, score_runs(evaluations)).front();
 }
 
-/// The row of a filter on signals with these scores. With adaptive noise its NIS is not chi-square. `nis`: factor on
-/// the NIS.
-inline DiagnosticsRow row_of(const std::vector<std::vector<double>>& scores, FilterNoise noise = FilterNoise::adaptive,
+/// The row of a filter on signals with these scores. `nis`: factor on the NIS.
+inline DiagnosticsRow row_of(const std::vector<std::vector<double>>& scores, bool chi_square_nis = false,
                              double nis = 1.0) {
   const Eigen::Index signals = std::ssize(scores), samples = std::ssize(scores[0]) + 1;
   const Bank bank = single_mode(example_bank(signals, 0, 1, 1e-6), 0);
@@ -76,7 +75,7 @@ inline DiagnosticsRow row_of(const std::vector<std::vector<double>>& scores, Fil
       e.nis(k) += nis * z * z;
     }
   run.role = Role::test;
-  return diagnose("bank", Role::test, bank, {.noise = noise}, {run}, {e}, score_runs({e})).front();
+  return diagnose("bank", Role::test, bank, chi_square_nis, {run}, {e}, score_runs({e})).front();
 }
 
 }  // namespace modebank::test

@@ -10,11 +10,9 @@ namespace modebank::fuzz {
 namespace {
 
 /// A bank of three modes with one state and one input.
-BankFilter new_filter(bool adaptive) {
+BankFilter new_filter() {
   static const Bank bank = *test::full_archive(1, 1).bank;
-  FilterOptions options;
-  options.noise = adaptive ? FilterNoise::adaptive : FilterNoise::gaussian;
-  return {bank, options};
+  return {bank, {}};
 }
 
 void track_lines(std::string_view text) {
@@ -22,7 +20,7 @@ void track_lines(std::string_view text) {
   columns.input = {"u0"};
   columns.state = {"x0"};
   app::SampleReader reader(columns);
-  BankFilter filter = new_filter(text.size() % 2 == 0);
+  BankFilter filter = new_filter();
   double last_s = -INFINITY;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());

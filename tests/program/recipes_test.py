@@ -1,11 +1,11 @@
-"""docs/howto/recipes.md: its lines run unchanged on the demo, and stop where the filter was rejected."""
+"""docs/howto/recipes.md: its lines run unchanged on archives, and stop where the filter was rejected."""
 import json
 import re
 import shutil
 import subprocess
 import sys
 
-from program import ProgramTest, SOURCE, demo, main, modebank, np
+from program import ProgramTest, SOURCE, arrays, demo, h5py, learn, main, modebank, np, slices
 
 PAGE = (SOURCE / "docs/howto/recipes.md").read_text(encoding="utf-8")
 # The parts of CasADi in the recipe, on numbers: a stand-in where the module is absent.
@@ -20,6 +20,7 @@ PYTHON = [sys.executable, "-c"]
 RUNS = {"ROS 2": PYTHON, "CasADi": PYTHON}
 if shutil.which("octave-cli"):
     RUNS["MATLAB"] = ["octave-cli", "--no-init-file", "--eval"]
+MEASURED = ("--bank.measurement_variance", 1e-4, "--bank.refine", "none")
 
 
 def recipe(heading):
@@ -95,6 +96,47 @@ class Recipes(ProgramTest):
             x = sum(mu[k] * (mode["A"]["value"][0][0] * x + mode["c"]["value"][0][0]) for k, mode in enumerate(modes))
         expected = [*np.ravel([mode["B"]["value"] for mode in modes]), x]
         np.testing.assert_allclose(np.array(done.stdout.split(), float), expected, rtol=1e-10)
+
+
+def of_one_mode(folder):
+    """An archive of one mode with two lags, of runs with missing samples."""
+    lags = ("--window.model", "varx", "--window.state_lags", 2, "--window.input_lags", 2, "--window.input_delay", 1)
+    words = (*MEASURED, *lags, "--mixture.components", 1, "--data.missing", "predict")
+    return learn(folder, *words, samples=60, holes=True)
+
+
+class Smoothed(ProgramTest):
+    def smoothed(self, archive):
+        words = [sys.executable, "-c", recipe("Smoothed states"), archive]
+        subprocess.run(words, cwd=self.folder, check=True)
+        with np.load(self.folder / "smoothed.npz") as made:
+            return made["state"], made["covariance"]
+
+    def test_states_of_one_mode_are_those_of_the_smoother_at_6a013144(self):
+        archive = of_one_mode(self.folder)
+        lines = [line.split(",") for line in (SOURCE / "tests/golden/data/smoothed.csv").read_text().splitlines()]
+        golden = {line[0]: np.array(line[1:], float) for line in lines}
+        with h5py.File(archive, "r+") as file:  # the bank that was smoothed; this program may learn another one
+            for name in "ABcQR":
+                file["bank"][name][...] = golden[f"bank/{name}"].reshape(file["bank"][name].shape)
+        state, covariance = self.smoothed(archive)
+        np.testing.assert_allclose(state.ravel(), golden["evaluation/bank/smoothed_state"], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(covariance.ravel(), golden["evaluation/bank/smoothed_covariance"], rtol=0, atol=1e-9)
+
+    def test_states_of_two_modes_are_the_least_squares_of_all_samples(self):
+        archive = learn(self.folder, *MEASURED, "--mixture.components", 2)
+        state, covariance = self.smoothed(archive)
+        bank, data, said = (arrays(archive, path) for path in ("/bank", "/data", "/evaluation/bank"))
+        for rows in slices(archive).values():
+            mode, y, u = said["viterbi_mode"][rows], data["state"][rows], data["input"][rows]
+            self.assertEqual(set(mode), {0, 1})
+            N, Q, I = len(y), bank["Q"][mode, 0, 0], np.eye(len(y))
+            J = np.concatenate([I, I[1:] - (1 + bank["A"][mode[1:], 0, 0])[:, None] * I[:-1]])
+            right = np.concatenate([y[:, 0], np.sum(bank["B"][mode[1:], 0] * u[:-1], 1) + bank["c"][mode[1:], 0]])
+            weight = 1 / np.concatenate([np.full(N, bank["R"][0, 0]), Q[1:]])
+            P = np.linalg.inv(J.T @ (weight[:, None] * J))
+            np.testing.assert_allclose(state[rows, 0], P @ J.T @ (weight * right), rtol=0, atol=1e-9)
+            np.testing.assert_allclose(covariance[rows, 0, 0], np.diag(P), rtol=0, atol=1e-9)
 
 
 if __name__ == "__main__":

@@ -130,7 +130,7 @@ class Track(ProgramTest):
         jumps = [sample(900), sample(900.1), sample(1.0), "1.1,,0.1,0.1", "1.4,0.01,,"]
         said = columns(self.track(archive, [*lines[:11], *jumps]).stdout)
         self.assertEqual(said["steps"][10:].tolist(), [0, 1, 0, 1, 3])
-        self.assertTrue(np.isnan(said["nis"][13]) and said["wz"][13] == said["wz_predicted"][13])
+        self.assertTrue(np.isnan(said["nis"][13]) and abs(said["wz"][13] - said["wz_predicted"][13]) < 1e-12)
         between = [line for row in lines[1:21] for line in [row, *(
             f"{float(row.split(',')[0]) + 0.01 * i},{row.split(',', 1)[1]}" for i in range(1, 10))]]
         fast = columns(self.track(archive, lines[:1] + between, "--data.rate_hz=10").stdout)

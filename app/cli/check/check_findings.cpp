@@ -100,7 +100,7 @@ void channel_findings(const DataCheck& check, std::vector<std::string>& found) {
     if (channel.values.quantum > 0.0)
       found.push_back(fmt::format("{} comes in multiples of {:.6g}{}", channel.channel.name, channel.values.quantum,
                                   channel.is_state ? "; the rounding error is a third of that. data.quantum = auto "
-                                                     "treats values as intervals if that is coarse against the noise"
+                                                     "adds it to R if that is coarse against the noise"
                                                    : ""));
     if (channel.values.levels == 1)
       found.push_back(fmt::format("{} is constant: {:g} in every sample", channel.channel.name, channel.values.least));

@@ -49,8 +49,8 @@ std::vector<Option> bank_options() {
                  competitors),
       words("bank.noise_by_input",
             "a factor of 0.2 to 5 on all process noise, as a function of state and input. auto uses it where training "
-            "runs left out gain. It is not tried with adaptive noise, rounded samples, drifting modes, a "
-            "given R, bank.transition = logit, bank.look_ahead above 1, or without em",
+            "runs left out gain. It is not tried with rounded samples, a given R, "
+            " bank.transition = logit, bank.look_ahead above 1, or without em",
             MODEBANK_FIELD(noise_by_input))
           .touch("none, for a bank that is exported to C, or when you want an estimate of R", competitors),
       words("bank.transition",
@@ -79,13 +79,6 @@ std::vector<Option> bank_options() {
       look_ahead_option().touch("for control: the number of samples that you predict ahead; with error, for free runs "
                                 "whose mean matters more than their band",
                                 competitors),
-      words("bank.drift",
-            "whether each mode's parameters continue to adapt within a run. auto: at the rate at which training runs "
-            "left out are predicted best",
-            MODEBANK_FIELD(bank.em.drift))
-          .touch(
-              "auto, when conditions change within a run (wear, load, temperature) and a competitor that drifts wins",
-              competitors),
   };
 }
 
@@ -97,16 +90,11 @@ std::vector<Option> filter_options() {
             "Kalman filter)",
             MODEBANK_FIELD(filter.variant))
           .touch("rarely: to compare filters", competitors),
-      words("filter.noise",
-            "process noise of the modes: as learned (gaussian), or multiplied by a scale that adapts within the run "
-            "(adaptive)",
-            MODEBANK_FIELD(filter.noise))
-          .touch("adaptive, when the coverage of the 95 % band is wrong", competitors),
       numeric("filter.horizon", each(between(1, 10'000)), "samples",
               "how far ahead predictions are scored: a number, a range such as 1..10, or a list; 1: the screen's "
               "summary only",
               MODEBANK_FIELD(scoring.horizon))
-          .touch("for control: the number of samples that the controller predicts ahead", competitors, basic),
+          .touch("for control: the number of samples that the controller predicts ahead", bank, basic),
       numeric("filter.simulate", between(0, 1'000'000'000), "samples",
               "measured samples at the start of a free run; the rest of each run is predicted from its inputs alone, "
               "and scored. 0: no free run",
@@ -127,9 +115,6 @@ std::vector<Option> filter_options() {
             MODEBANK_FIELD(scoring.free_run.method))
           .touch("paths, when a mode's distribution is not Gaussian and the band must show it; it takes longer",
                  competitor_scores),
-      flag("filter.smooth", "whether smoothed states and the most probable sequence of modes are archived, too",
-           MODEBANK_FIELD(scoring.smooth))
-          .touch("false, when archives of long runs are too large", competitor_scores),
   };
 }
 

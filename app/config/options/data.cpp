@@ -46,11 +46,11 @@ Option skip_rows_option() {
 Option quantum_option() {
   Option result =
       numeric("data.quantum", each(above(0)), "state unit",
-              "rounding step of the states, one for each or one for all. Filters and learning then take a value as an "
-              "interval of this width. auto: the step in the training runs, if it is at least a third of their "
-              "residuals' standard deviation; none: values are exact",
+              "rounding step q of the states, one for each or one for all. R is then at least q^2 / 12, and scores "
+              "are masses of intervals of this width. auto: the step in the training runs, if it is at least a third "
+              "of their residuals' standard deviation; none: values are exact",
               MODEBANK_FIELD(data.quantum))
-          .touch("auto, when the finding says that measurements come in steps too coarse to compare densities");
+          .touch("auto, when the finding says that measurements repeat, and they come in steps");
   result.range = "none, auto or numbers > 0";
   result.set = [set = result.set](Config& config, const std::string& text) {
     const bool word = text == "auto" || text == "none" || text.empty();
@@ -221,8 +221,7 @@ std::vector<Option> data_options() {
           .touch("when times jitter or values repeat, which `modebank check` shows", data, basic),
       lag_option().touch("auto, when states and inputs come from two instruments; a number, when you know it", data,
                          basic),
-      quantum_option().touch(
-          "auto, when the finding says that measurements come in steps too coarse to compare densities", data),
+      quantum_option().touch("auto, when the finding says that measurements repeat, and they come in steps", data),
       words("data.missing",
             "treatment of NaN, infinite and empty values. error: stop. gap: split the run there. predict: a missing "
             "state is predicted without an update, a missing input repeats the one before",

@@ -19,7 +19,6 @@ void refuse_what_c_lacks(const ExportedBank& exported) {
     throw DataError(fmt::format("{} cannot be exported to C: {}", exported.archive, what));
   };
   if (exported.options.variant == FilterVariant::salvi2025) refuse("filter.variant = salvi2025");
-  if (!exported.bank.drift.empty()) refuse("modes that drift (bank.drift)");
   if (!exported.bank.terms.empty()) refuse("a motion that bends (window.terms)");
   if (!exported.bank.noise_factor.empty())
     refuse("process noise that follows state and input (--bank.noise_by_input none learns a bank without it)");

@@ -162,15 +162,10 @@ std::string bank_numbers(const ExportedBank& exported) {
           "/* The bank. x: {}.\n * u: {}.\n * y: {}.\n * A[i][j] is in units of x[i] per x[j], B[i][j] of x[i] per "
           "u[j], c[i] of x[i], Q[i][j] of x[i] x[j]. */\n"
           "enum {{\n  FIRST_TRANSITION = {}, /* of a run, by samples before it */\n"
-          "  ADAPTIVE_NOISE = {},\n  TRANSITION_BY_STATE = {}\n}};\n\n",
+          "  TRANSITION_BY_STATE = {}\n}};\n\n",
           joined_names(exported.states), joined_names(exported.inputs), joined_names(exported.measurements),
-          exported.structure().first_transition(), exported.options.noise == FilterNoise::adaptive ? 1 : 0,
-          bank.transition_logit.empty() ? 0 : 1) +
+          exported.structure().first_transition(), bank.transition_logit.empty() ? 0 : 1) +
       constant("bank_dt_s", number(bank.dt_s), "Length of a step [s]; 0: samples have no clock") +
-      constant("bank_noise_forgetting", number(bank.noise_adaptation.forgetting),
-               "of the noise scale, per sample, with ADAPTIVE_NOISE") +
-      constant("bank_noise_prior_samples", number(bank.noise_adaptation.prior_samples),
-               "samples at scale one that a start is worth") +
       fmt::format(
           "/* Samples from each input to its first effect */\nstatic const int bank_input_delay[] = {{{}}};\n\n",
           fmt::join(s.input_delay.by_input(std::max<Index>(1, s.inputs)), ", ")) +

@@ -26,16 +26,16 @@ enum {
 #define LOWEST_LOG_DENSITY (-1e300) /* lower ones are not told apart [nats] */
 #define LARGEST_MEASUREMENT 1e30    /* one that is not smaller counts as missing */
 #define LEAST_PIVOT 1e-14           /* share of a diagonal entry that is rounding */
-#define LARGEST_SQUARE 1e300        /* an innovation beyond it has no bearing on the noise */
+#define LARGEST_SQUARE 1e300        /* larger than any that counts */
 #define LEAST_LOG_ODDS (-200.0)     /* further odds are as good as certain */
-#define LARGEST_STANDARDISED 5.0    /* standard deviations that an outlier counts as, at most */
-#define LARGEST_NOISE_SCALE 1e8     /* and its inverse the least */
 
 /* ---- Samples ---- */
 
-/* Number of model steps between two times. Without a clock (bank_dt_s = 0) every sample is one step. */
+/* Number of model steps between two times. Without a clock (bank_dt_s = 0) every sample is one step. A time that goes
+ * back is a new start. */
 static int steps_between(double from_s, double to_s) {
   const double periods = (to_s - from_s) / bank_dt_s;
+  if (to_s < from_s) return LONGEST_GAP + 1;
   if (!(bank_dt_s > 0) || !(to_s - from_s >= 1.25 * bank_dt_s) || isnan(periods)) return 1;
   if (periods >= LONGEST_GAP + 1) return LONGEST_GAP + 1;
   return (int)(periods + 0.5);
@@ -166,8 +166,8 @@ static void make_usable(modebank_gaussian* g) {
   for (int i = 0; mean > LARGEST_MEAN && i < STATES; ++i) g->mean[i] *= LARGEST_MEAN / mean;
 }
 
-/* x := A x + B v + c, P := A P A' + noise_scale Q, of mode j. */
-static void predict_mode(const modebank_gaussian* from, int j, const double* v, double noise_scale,
+/* x := A x + B v + c, P := A P A' + Q, of mode j. */
+static void predict_mode(const modebank_gaussian* from, int j, const double* v,
                          modebank_gaussian* to) {
   double AP[STATES][STATES];
   for (int a = 0; a < STATES; ++a) {
@@ -182,7 +182,7 @@ static void predict_mode(const modebank_gaussian* from, int j, const double* v, 
   }
   for (int b = 0; b < STATES; ++b)
     for (int a = b; a < STATES; ++a) {
-      double sum = noise_scale * bank_Q[j][a][b];
+      double sum = bank_Q[j][a][b];
       for (int i = 0; i < STATES; ++i) sum += AP[a][i] * bank_A[j][b][i];
       to->covariance[a][b] = to->covariance[b][a] = sum;
     }
@@ -352,55 +352,6 @@ static double bayes(modebank_filter* filter) {
   return largest + log(sum);
 }
 
-/* ---- The adaptive scale of the noise ---- */
-
-/* tr(S^-1 C Q C') and e' S^-1 C Q C' S^-1 e of mode j, where e' S^-1 e is bounded. */
-static void explained(const sensor_t* sensor, const modebank_step_of_mode* m, int j, double* share, double* square) {
-  double CQC[MEASUREMENTS][MEASUREMENTS], column[MEASUREMENTS], nis = 0;
-  const double most = LARGEST_STANDARDISED * LARGEST_STANDARDISED * (MEASUREMENTS - sensor->missing);
-  *share = *square = 0;
-  for (int i = 0; i < MEASUREMENTS; ++i)
-    for (int k = 0; k < MEASUREMENTS; ++k) {
-      CQC[i][k] = 0;
-      for (int a = 0; a < STATES; ++a)
-        for (int b = 0; b < STATES; ++b) CQC[i][k] += sensor->C[i][a] * bank_Q[j][a][b] * sensor->C[k][b];
-    }
-  for (int i = 0; i < MEASUREMENTS; ++i) {
-    for (int k = 0; k < MEASUREMENTS; ++k) column[k] = CQC[k][i];
-    solve(m, column);
-    *share += column[i];
-    nis += m->decorrelated[i] * m->decorrelated[i] / m->D[i];
-  }
-  if (!(nis < LARGEST_SQUARE)) return;
-  for (int i = 0; i < MEASUREMENTS; ++i) column[i] = m->innovation[i];
-  solve(m, column);
-  for (int i = 0; i < MEASUREMENTS; ++i)
-    for (int k = 0; k < MEASUREMENTS; ++k) *square += column[i] * CQC[i][k] * column[k];
-  if (nis > most) *square *= most / nis;
-}
-
-/* Discounted sums, shrunk towards one as the run's memory fades (West and Harrison 1997, section 10.8). */
-static void adapt_noise(modebank_filter* filter, const sensor_t* sensor) {
-  const double n_y = MEASUREMENTS - sensor->missing, scale = filter->noise_scale;
-  const double f = bank_noise_forgetting, n_0 = bank_noise_prior_samples;
-  double weight[MODES], total = 0, share = 0, square = 0, squares;
-  likelihood_weights(filter, weight);
-  for (int j = 0; j < MODES; ++j) {
-    double share_j, square_j;
-    if (!(weight[j] > 0)) continue;
-    explained(sensor, &filter->step[j], j, &share_j, &square_j);
-    total += weight[j];
-    share += weight[j] * scale * share_j;
-    square += weight[j] * scale * square_j;
-  }
-  share /= total;
-  square /= total;
-  if (!isfinite(share) || !isfinite(square)) return;
-  squares = f * filter->noise_samples * scale + (1 - f) * n_0 + scale * square / n_y;
-  filter->noise_samples = f * filter->noise_samples + (1 - f) * n_0 + share / n_y;
-  filter->noise_scale = fmin(fmax(squares / filter->noise_samples, 1 / LARGEST_NOISE_SCALE), LARGEST_NOISE_SCALE);
-}
-
 /* ---- The filter ---- */
 
 static void predict(modebank_filter* filter, const double* v) {
@@ -408,7 +359,7 @@ static void predict(modebank_filter* filter, const double* v) {
   const modebank_gaussian* from = mix(filter, v);
   make_sensor(0, &sensor);
   for (int j = 0; j < MODES; ++j) {
-    predict_mode(&from[j], j, v, filter->noise_scale, &filter->step[j].predicted);
+    predict_mode(&from[j], j, v, &filter->step[j].predicted);
     expect(&sensor, &filter->step[j]);
   }
 }
@@ -430,7 +381,6 @@ static double take_in(modebank_filter* filter, const sensor_t* sensor) {
     observe(sensor, m);
     correct(sensor, m, &filter->mode[j]);
   }
-  if (ADAPTIVE_NOISE) adapt_noise(filter, sensor);
   return bayes(filter);
 }
 
@@ -509,8 +459,6 @@ static void start(modebank_filter* filter) {
     filter->mode_probability[j] = bank_initial_probability[j];
   }
   floor_probabilities(filter->mode_probability);
-  filter->noise_scale = 1;
-  filter->noise_samples = bank_noise_prior_samples;
   filter->started = 1;
 }
 

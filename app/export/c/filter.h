@@ -45,7 +45,6 @@ typedef struct {
   int started;
   modebank_gaussian mode[MODEBANK_MODES];
   double mode_probability[MODEBANK_MODES];
-  double noise_scale, noise_samples;                                  /* every mode's Q is multiplied by noise_scale */
   double recorded[MODEBANK_KEPT_INPUTS][MODEBANK_ROOM_FOR_INPUTS];    /* inputs, newest first */
   double measured[MODEBANK_KEPT_MEASUREMENTS][MODEBANK_MEASUREMENTS]; /* newest first */
   int samples, whole; /* samples so far, and whole ones in a row; neither is counted further than a start needs */

@@ -21,7 +21,7 @@ namespace modebank {
 /// - undecided: all other cases, such as a few hundred samples.
 /// If the filter is neither overconfident nor underconfident by these rules, the mean NIS decides. It must lie outside
 /// the 99 % interval for a correct model and differ from the expected mean by more than a tenth. This rule holds only
-/// if every prediction is one Gaussian of known variance. Otherwise (mixture, adaptive noise) the NIS is not chi-square
+/// if every prediction is one Gaussian of known variance. Otherwise (mixture, running noise) the NIS is not chi-square
 /// and decides nothing here.
 ///
 /// Autocorrelated samples count as fewer independent samples. Their number follows from an autocorrelation time with a
@@ -29,9 +29,23 @@ namespace modebank {
 /// second is needed because short runs have few misses. The longer time is used.
 enum class Calibration { undecided, calibrated, overconfident, underconfident };
 
+/// The number that decides a verdict. none: every number passes (calibrated). band: share inside the 95 % band. close:
+/// share near the middle of the band. nis: mean NIS. pattern: lag-1 autocorrelation. few_samples: an interval is wider
+/// than the calibrated band.
+enum class CalibrationReason { none, band, close, nis, pattern, few_samples };
+
 template <>
 struct EnumNames<Calibration> {
   static constexpr Names<4> values{"undecided", "calibrated", "overconfident", "underconfident"};
+};
+template <>
+struct EnumNames<CalibrationReason> {
+  static constexpr Names<6> values{"none", "band", "close", "NIS", "pattern", "few samples"};
+};
+
+struct Verdict {
+  Calibration calibration = Calibration::undecided;
+  CalibrationReason reason = CalibrationReason::few_samples;
 };
 
 /// Limits for `calibrated`: share of signals outside the deciding band, and share of signals too close to the middle.
@@ -41,9 +55,6 @@ inline constexpr double least_outside = 0.025, largest_outside = 0.075, least_cl
 inline constexpr double nis_tolerance = 0.1;
 /// Limits for `calibrated`: mean NIS per signal, and lag-1 autocorrelation of z.
 inline constexpr double least_nis = 0.75, most_nis = 1.3, largest_correlation = 0.2;
-
-/// Shares of signals outside the band. If significant, they decide a verdict (calibration_of).
-inline constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
 
 /// 1 where a signal is a hit, else 0; run by run, in time order. An element has one byte, because each sample has six
 /// elements.
@@ -66,11 +77,7 @@ double time_by_sizes(const SeriesByRun& sizes);
 /// Interval of a fraction of hits, for the effective number of independent samples. `time`: from time_by_sizes.
 Interval fraction_interval(const SeriesByRun& hits, double time, double level = 0.95);
 
-inline bool within(double value, double least, double largest) { return value >= least && value <= largest; }
-/// Whether an interval contains the whole calibrated band and values outside. If so, the data are inconclusive.
-bool says_nothing(const Interval& interval, double least, double largest);
-
-/// The verdict for these counts. `time`: from time_by_sizes.
-Calibration calibration_of(const BandCounts& counts, double time);
+/// The verdict for these counts, and why. `time`: from time_by_sizes.
+Verdict verdict_of(const BandCounts& counts, double time);
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <iterator>
 
 #include "filter/judge/score/squared_distances.hpp"
+#include "filter/step/equations/bounds.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -84,6 +85,7 @@ class Collector {
 
   void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, OutputSeries& z) {
     ++sums.samples;
+    sums.failed += e.log_density(k) <= lowest_log_density ? 1 : 0;
     for (Index i = 0; i < e.pit.rows(); ++i) {
       if (std::isnan(e.pit(i, k))) continue;
       const double score = scores.z(i, k);

@@ -13,7 +13,7 @@ namespace modebank {
 
 /// Statistics of the samples of one row.
 struct Collected {
-  Eigen::Index samples = 0, entropy_samples = 0;
+  Eigen::Index samples = 0, entropy_samples = 0, failed = 0;  ///< failed: samples without a density above zero
   double usage = 0.0, entropy = 0.0, visits = 0.0, visited = 0.0;
   BandCounts counts;
   SquaredDistances nees;

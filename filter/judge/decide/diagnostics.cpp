@@ -17,50 +17,11 @@ using Eigen::Index;
 constexpr double coloured = 0.01;          // whiteness p
 constexpr double noticeable_colour = 0.1;  // autocorrelation
 
-CalibrationReason reason_of_overconfidence(const DiagnosticsRow& row) {
-  const bool many = 1.0 - row.coverage_95 > many_outside && row.coverage_95_upper < 1.0 - true_outside;
-  return many ? CalibrationReason::band : CalibrationReason::nis;
-}
-
-CalibrationReason reason_of_underconfidence(const DiagnosticsRow& row) {
-  const double outside = 1.0 - row.coverage_95;
-  if (outside < few_outside && row.coverage_95_lower > 1.0 - true_outside) return CalibrationReason::band;
-  return outside < true_outside && row.too_close_lower > largest_close ? CalibrationReason::close
-                                                                       : CalibrationReason::nis;
-}
-
-CalibrationReason reason_of_doubt(const DiagnosticsRow& row) {
-  const Interval outside{1.0 - row.coverage_95_upper, 1.0 - row.coverage_95_lower};
-  const bool unknown = row.samples == 0 || std::isnan(row.coverage_95) ||
-                       says_nothing(outside, least_outside, largest_outside) ||
-                       says_nothing({row.too_close_lower, row.too_close_upper}, least_close, largest_close);
-  if (unknown) return CalibrationReason::few_samples;
-  if (!within(1.0 - row.coverage_95, least_outside, largest_outside)) return CalibrationReason::band;
-  if (!within(row.too_close, least_close, largest_close)) return CalibrationReason::close;
-  const auto signals = static_cast<double>(row.state_rmse.size());
-  return within(row.nis_mean, least_nis * signals, most_nis * signals) ? CalibrationReason::pattern
-                                                                       : CalibrationReason::nis;
-}
-
 }  // namespace
-
-CalibrationReason reason_of(const DiagnosticsRow& row) {
-  switch (row.verdict) {
-    case Calibration::overconfident:
-      return reason_of_overconfidence(row);
-    case Calibration::underconfident:
-      return reason_of_underconfidence(row);
-    case Calibration::undecided:
-      return reason_of_doubt(row);
-    case Calibration::calibrated:
-      break;
-  }
-  return CalibrationReason::band;
-}
 
 bool errors_follow_a_pattern(const DiagnosticsRow& row) {
   return (row.whiteness_p < coloured && std::abs(row.autocorrelation) > noticeable_colour) ||
-         (row.verdict == Calibration::undecided && reason_of(row) == CalibrationReason::pattern);
+         row.reason == CalibrationReason::pattern;
 }
 
 namespace {
@@ -127,7 +88,9 @@ DiagnosticsRow make_row(const Collected& c, Index nees_states) {
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
-  row.verdict = calibration_of(c.counts, time);
+  const Verdict verdict = verdict_of(c.counts, time);
+  row.verdict = verdict.calibration;
+  row.reason = verdict.reason;
   return row;
 }
 
@@ -153,9 +116,11 @@ std::string two_digits(double value) {
 }
 
 /// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: number of
-/// states of the NEES.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states) {
+/// states of the NEES. `failed`: samples at which the filter failed.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states,
+                     Eigen::Index failed) {
   std::string flags;
+  if (failed > 0) add_flag(flags, "the filter failed at " + std::to_string(failed) + " samples");
   for (const DiagnosticsRow& mode : modes)
     if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
   if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
@@ -164,8 +129,7 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
   if (errors_follow_a_pattern(all))
     add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
                         std::to_string(all.autocorrelation_lag));
-  if (all.verdict == Calibration::undecided && reason_of(all) == CalibrationReason::few_samples)
-    add_flag(flags, "too few samples for a verdict");
+  if (all.reason == CalibrationReason::few_samples) add_flag(flags, "too few samples for a verdict");
   if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
     add_flag(flags, nees_states == 0 ? "R is nearly zero, so the state equals the measurement: no NEES"
                                      : "R of some states is nearly zero, so these states equal the measurement: "
@@ -175,15 +139,12 @@ std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow
 
 }  // namespace
 
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank,
-                                     const FilterOptions& options, const std::vector<Trajectory>& runs,
-                                     const std::vector<RunEvaluation>& evaluations,
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank, bool chi_square_nis,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores) {
   if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
-  // True if every prediction is one Gaussian of known variance.
-  const bool chi_square_nis =
-      (bank.mode_count() == 1 || options.variant == FilterVariant::kf) && options.noise == FilterNoise::gaussian;
   const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+  Index failed = 0;
   const auto row_of = [&](Index mode) {
     const Collected collected = collect(bank, mode, role, chi_square_nis, nees_states, runs, evaluations, scores);
     DiagnosticsRow row = make_row(collected, std::ssize(nees_states));
@@ -191,6 +152,7 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const
     row.role = role;
     row.mode = mode;
     if (mode < 0) {
+      failed = collected.failed;
       const Autocorrelation colour = largest_autocorrelation(collected.z);
       row.autocorrelation = colour.value;
       row.autocorrelation_lag = colour.lag;
@@ -201,7 +163,7 @@ std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const
   };
   std::vector<DiagnosticsRow> rows{row_of(-1)};
   for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
-  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states));
+  rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states), failed);
   return rows;
 }
 

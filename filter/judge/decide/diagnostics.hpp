@@ -45,23 +45,16 @@ struct DiagnosticsRow {
                                  ///< for a mode
   Eigen::Index autocorrelation_lag = 0;
   Calibration verdict = Calibration::undecided;
-  std::string flags;  ///< remarkable facts, separated by "; "
+  CalibrationReason reason = CalibrationReason::few_samples;  ///< what decided the verdict
+  std::string flags;                                          ///< remarkable facts, separated by "; "
 };
 
 /// Rows of one filter on the runs of a role: the whole filter, then each mode if there are several. Without runs there
-/// are no rows. Only the runs of this role need an evaluation. `options`: options of the filter that made the
-/// evaluations. `scores`: scores of the evaluations (score_runs).
-std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank,
-                                     const FilterOptions& options, const std::vector<Trajectory>& runs,
-                                     const std::vector<RunEvaluation>& evaluations,
+/// are no rows. Only the runs of this role need an evaluation. `chi_square_nis`: whether every prediction is
+/// one Gaussian of known variance. `scores`: scores of the evaluations (score_runs).
+std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank, bool chi_square_nis,
+                                     const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores);
-
-/// Numbers that a verdict is based on (rules: calibration.hpp). band: share inside the 95 % band. close: share near the
-/// middle of the band. nis: mean NIS. pattern: lag-1 autocorrelation. few_samples: an interval is wider than the
-/// calibrated band.
-enum class CalibrationReason { band, close, nis, pattern, few_samples };
-
-CalibrationReason reason_of(const DiagnosticsRow& row);
 
 /// Whether earlier errors predict a filter's errors: the errors are not white (Ljung & Box), and at least a hundredth
 /// of their variance is predictable; or the verdict says so.

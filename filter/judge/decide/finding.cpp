@@ -17,8 +17,6 @@ namespace {
 
 using Eigen::Index;
 
-constexpr double coarse_share = 0.25;  // largest quantum, as a share of the innovation's standard deviation. With a
-                                       // larger quantum, a density has peaks between the rounded values
 constexpr Index free_run_horizon = 0;
 constexpr double noticeable_rmse = 1e-3;  // smallest relative difference of two RMSE that counts; it is visible in a
                                           // table with three digits
@@ -86,14 +84,12 @@ bool beats_the_best(const Finding& finding) {
   return gain && is_beaten(*gain);
 }
 
-bool is_coarse(const Resolution& state) {
-  return state.repeated > repeated_share || state.quantum > coarse_share * state.innovation_sd;
-}
+bool repeats(const Resolution& state) { return state.repeated > repeated_share; }
 
 /// The answer by scores, if lags and time steps allow an answer.
 Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
-  if (!finding.coarse.empty()) return Answer::not_comparable;
+  if (!finding.repeating.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
   if (any([](const PairedGain& gain) { return gain.gain <= 0.0 || gain.gain + gain.margin < negligible_gain; }))
@@ -128,15 +124,13 @@ double stay_of(const FindingInputs& in) {
   return left > 0.0 ? used / left : not_a_number;
 }
 
-Description description_of(const Finding& finding, const Bank& bank) {
+Description description_of(const Finding& finding) {
   const std::string& simpler = finding.better_description;
   if (finding.answer == Answer::not_yet || finding.answer == Answer::not_comparable) return Description::none;
   if (finding.answer == Answer::evidence) return Description::several_modes;
-  const bool drifts = simpler.empty() ? !bank.drift.empty()
-                                      : simpler == "drifting" || (simpler == "one_motion" && finding.one_motion_drifts);
   if (simpler.empty() && finding.answer != Answer::one_mode) return Description::none;
   if (simpler == "nonlinear") return Description::one_nonlinear_motion;
-  return drifts ? Description::one_drifting_motion : Description::one_linear_motion;
+  return simpler == "drifting" ? Description::one_drifting_motion : Description::one_linear_motion;
 }
 
 /// Whether the errors of one linear model are only the rounding of the data.
@@ -213,8 +207,7 @@ bool any_pair(const Bank& bank, Holds holds) {
 
 }  // namespace
 
-const char* description_of(const std::string& competitor, bool one_motion_drifts) {
-  if (competitor == "one_motion" && one_motion_drifts) return "one linear model that wanders, with changing noise";
+const char* description_of(const std::string& competitor) {
   if (competitor == "baseline") return "one linear model with constant noise";
   if (competitor == "noise_only" || competitor == "one_motion") return "one linear model with changing noise";
   if (competitor == "drifting") return "one linear model whose parameters wander";
@@ -275,8 +268,7 @@ Finding judge_modes(const FindingInputs& in) {
   finding.stay = stay_of(in);
   finding.stay_asked = std::max(fewest_stay, static_cast<double>(in.bank.structure.first_transition() + 1));
   finding.without_noise = leaves_rounding(in);
-  finding.one_motion_drifts = in.one_motion_drifts;
-  std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.coarse), is_coarse);
+  std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.repeating), repeats);
   for (const Densities& competitor : in.competitors)
     finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
   set_best_competitor(finding);
@@ -284,7 +276,7 @@ Finding judge_modes(const FindingInputs& in) {
   const bool densities_tell =
       finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
   if (densities_tell && !beats_the_best(finding)) set_better_description(in.competitors, finding);
-  finding.description = description_of(finding, in.bank);
+  finding.description = description_of(finding);
   if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;
 }

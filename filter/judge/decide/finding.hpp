@@ -21,7 +21,7 @@
 namespace modebank {
 
 /// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable: log
-/// densities cannot be compared, because measurements are too coarse or repeated too often.
+/// densities cannot be compared, because measurements are repeated too often.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
@@ -33,8 +33,7 @@ struct EnumNames<Answer> {
 inline constexpr std::array<const char*, 5> competitor_names{"baseline", "noise_only", "one_motion", "drifting",
                                                              "nonlinear"};
 /// A competitor's description of the runs, such as "one linear model with constant noise"; empty for other names.
-/// `one_motion_drifts`: whether the theta of `one_motion` drifts.
-const char* description_of(const std::string& competitor, bool one_motion_drifts);
+const char* description_of(const std::string& competitor);
 
 /// The simplest description of the judged runs' motion that the scores allow. none: no run was judged, or the result is
 /// inconclusive.
@@ -84,10 +83,9 @@ struct Densities {
 /// Resolution of a state's measurement.
 struct Resolution {
   std::string state;
-  double quantum = 0.0;        ///< spacing of the values; 0 if none was found
-  double repeated = 0.0;       ///< share of the samples in motion that equal the previous sample
-  double innovation_sd = 0.0;  ///< median standard deviation of the bank's predictions in motion [state unit]
-  double sd = 0.0;             ///< standard deviation of the samples [state unit]; 0 if unknown
+  double repeated = 0.0;  ///< share of the samples in motion that equal the previous sample; 0 if a known quantum
+                          ///< explains repetitions
+  double sd = 0.0;        ///< standard deviation of the samples [state unit]; 0 if unknown
 };
 
 /// Limit on the share of repeated samples; above the limit, densities are not compared. In noisy measurements two
@@ -116,12 +114,11 @@ struct Finding {
   double stay = not_a_number;  ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
                                ///< unknown
   double stay_asked = 0.0;     ///< smallest stay for evidence [samples]
-  std::vector<Resolution> coarse;  ///< states for which densities are not comparable
-  bool without_noise = false;      ///< whether one linear model explains the runs up to rounding
-  bool one_motion_drifts = false;  ///< whether the competitor `one_motion` drifts within a run, as the bank does
-  bool terms_asked = false;        ///< whether terms of one nonlinear motion were searched on the training runs
-  std::vector<PairedGain> gains;   ///< gains of the bank over each competitor
-  std::string best_competitor;     ///< competitor with the highest log score; empty without competitors
+  std::vector<Resolution> repeating;  ///< states for which densities are not comparable
+  bool without_noise = false;         ///< whether one linear model explains the runs up to rounding
+  bool terms_asked = false;           ///< whether terms of one nonlinear motion were searched on the training runs
+  std::vector<PairedGain> gains;      ///< gains of the bank over each competitor
+  std::string best_competitor;        ///< competitor with the highest log score; empty without competitors
   double gain = 0.0, standard_error = 0.0;  ///< gain over best_competitor [nats/sample]; NaN if unknown
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs in place of modes; empty if there is none
@@ -156,7 +153,6 @@ struct FindingInputs {
   const std::vector<HorizonRow>& horizons;
   const std::vector<Resolution>& states;
   const std::vector<FreeRunRow>& free_runs;
-  bool one_motion_drifts = false;
   double step_scatter = 0.0;  ///< as in Finding
   std::vector<DiagnosticsRow> diagnostics = {};
   ErrorPattern pattern = {};

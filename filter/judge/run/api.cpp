@@ -1,6 +1,5 @@
 // The public API of scoring: converts between plain vectors and Eigen.
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/smoother.hpp"
 #include "ident/data/public_recording.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/judge/evaluate.hpp"
@@ -27,15 +26,6 @@ Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const 
 
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
   return modebank::log_likelihood(bank.internal(), to_internal(bank, run), options);
-}
-
-Smoothed smooth_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
-  const Trajectory trajectory = to_internal(bank, run);
-  RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
-  modebank::smooth_run(bank.internal(), trajectory, options, e);
-  return {to_matrix(e.smoothed_state),
-          to_matrix(e.smoothed_covariance),
-          {e.viterbi_mode.data(), e.viterbi_mode.data() + e.viterbi_mode.size()}};
 }
 
 }  // namespace modebank::judge

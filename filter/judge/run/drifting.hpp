@@ -17,21 +17,25 @@ namespace modebank {
 struct DriftingForecasts {
   HorizonEvaluation predictions;  ///< predictions; their log densities have a variance factor of 1
 
-  /// Per horizon n x N: errors whitened to unit variance and no correlation, L^-1 error with L L' = cov(error).
-  std::vector<Eigen::MatrixXd> whitened;
+  /// Per horizon J n x N: errors whitened to unit variance and no correlation in each noise level, L^-1 error with
+  /// L L' = cov(error). And J x N: log of the level's probability divided by the determinant of L.
+  std::vector<Eigen::MatrixXd> whitened, log_weight;
 };
 DriftingForecasts drifting_forecasts(const Bank& bank, const Trajectory& run, std::vector<Eigen::Index> horizons);
 
-/// Advances the recursion from the previous moment to moment t of a run.
-void follow(const RunInstants& instants, Eigen::Index t, const Trajectory& run, DriftingRecursion& recursion);
+/// Advances the recursion from the previous moment to moment t of a run. Returns the log density of the sample; NaN
+/// without a prediction or a sample.
+double follow(const RunInstants& instants, Eigen::Index t, const Trajectory& run, DriftingRecursion& recursion);
 
 /// Log density of a prediction error [nats]. Outputs are decorrelated in order; each then has Student's density.
 double log_density(const StudentNoise& noise, const Eigen::VectorXd& error, const Eigen::MatrixXd& covariance);
 
-/// Change of the log density of whitened errors if their variance is multiplied by `factor`.
-double widening_gain(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened, double factor);
+/// Change of the log density of sample k at a horizon (its index) if the variance is multiplied by `factor`.
+double widening_gain(const StudentNoise& noise, const DriftingForecasts& forecasts, std::size_t horizon, Eigen::Index k,
+                     double factor);
 
-/// evaluate_horizons for a bank with running noise. Log densities are Student's, with the bank's factor of the horizon.
+/// evaluate_horizons for a bank with running noise. Log densities are Student's, or mixtures
+/// of the noise levels, with the bank's factor of the horizon. One sample ahead they are those of the filter.
 /// Outputs with correlated errors are first decorrelated in order.
 HorizonEvaluation drifting_horizons(const Bank& bank, const Trajectory& run, std::vector<Eigen::Index> horizons);
 

@@ -20,16 +20,13 @@ struct RunEvaluation {
   Eigen::MatrixXd state;                  ///< n x N, state after the measurement
   Eigen::MatrixXd covariance;             ///< n*n x N, covariance of the state after the measurement
   Eigen::VectorXd nis;                    ///< N
-  Eigen::MatrixXd pit;                    ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for quantised signals
-  Eigen::MatrixXd pit_width;              ///< n_y x N, width of the interval of pit; empty if no signal is quantised
+  Eigen::MatrixXd pit;                    ///< n_y x N, Rosenblatt's transform; drawn by draw_pit for rounded signals
+  Eigen::MatrixXd pit_width;              ///< n_y x N, width of the interval of pit; empty if no signal is rounded
   Eigen::VectorXd log_density;            ///< N, nats
   Eigen::MatrixXd mode_probability_predicted;  ///< K x N, mode probabilities before the measurement
   Eigen::MatrixXd mode_probability;            ///< K x N, mode probabilities after the measurement
-
-  // Filled by smooth_run; otherwise empty.
-  Eigen::MatrixXd smoothed_state;       ///< n x N, state given the whole run
-  Eigen::MatrixXd smoothed_covariance;  ///< n*n x N
-  Eigen::VectorXi viterbi_mode;         ///< N, most probable sequence of modes; -1 before the start
+  Eigen::VectorXi viterbi_mode;  ///< N, most probable sequence of modes (mode_sequence), -1 before the start; empty if
+                                 ///< nobody asked for it
 };
 
 /// Filters one run, whose `state` holds the measurements (n_y x N), from x[0] = y[0], P[0] = R. A signal with a NaN
@@ -48,10 +45,12 @@ RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& 
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
 /// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
-/// Stores nothing, so maximum likelihood can call it thousands of times. The conditions are those of evaluate_run.
+/// Rounded signals have the densities of the filter, whose R has the rounding, and not the masses that evaluate_run
+/// scores. Stores nothing, so maximum likelihood can call it thousands of times. The conditions are those of
+/// evaluate_run.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// The log predictive density of every sample of a run [nats], N; NaN where it does not exist.
+/// The summands of log_likelihood for every sample of a run [nats], N; NaN where there is none.
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

@@ -83,9 +83,12 @@ class PathForecast final : public Forecast {
 
  private:
   Eigen::MatrixXd C_, R_, R_root_;
+  Eigen::VectorXd quantum_;  ///< n_y; empty if no signal is rounded
   SamplePaths paths_;
   Eigen::MatrixXd sorted_;  ///< count x n_y, of the present sample
   Eigen::VectorXd share_;   ///< K
+
+  double log_density_of_mode(Eigen::VectorXd error, const Eigen::MatrixXd& S) const;
 };
 
 /// Forecast of a bank with running noise.

@@ -13,6 +13,7 @@ PathForecast::PathForecast(const Bank& bank, Index paths, std::uint64_t seed, Tr
     : C_(bank.C),
       R_(bank.recording_noise()),
       R_root_(covariance_root(R_)),
+      quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
       paths_(bank, paths, seed, std::move(row)),
       share_(bank.mode_count()) {}
 
@@ -66,6 +67,17 @@ double PathForecast::quantile(Index i, double p) const {
   return values(below) + (place - static_cast<double>(below)) * (values(above) - values(below));
 }
 
+/// Log density of an error with covariance S; for rounded signals with the masses of their intervals.
+double PathForecast::log_density_of_mode(Eigen::VectorXd error, const Eigen::MatrixXd& S) const {
+  if (quantum_.size() == 0) return modebank::log_density(StudentNoise(0.0), error, S);
+  small::Ldl<Eigen::Dynamic> factor(S.rows());
+  factor.factorise(S);
+  factor.decorrelate(error);
+  double sum = 0.0;
+  for (Index i = 0; i < error.size(); ++i) sum += ModeSignal{error(i), factor.D(i)}.log_density(quantum_(i));
+  return sum;
+}
+
 double PathForecast::log_density(const Vector& y) {
   const Eigen::MatrixXd predicted = C_ * paths_.predicted();
   Eigen::VectorXd log_likelihood = Eigen::VectorXd::Constant(share_.size(), lowest_log_density), posterior = share_;
@@ -79,7 +91,7 @@ double PathForecast::log_density(const Vector& y) {
     centred.colwise() -= mean;
     const Eigen::MatrixXd S = centred * centred.transpose() / static_cast<double>(in_mode.size()) +
                               C_ * paths_.step_noise(j, in_mode) * C_.transpose() + R_;
-    log_likelihood(j) = modebank::log_density(StudentNoise(0.0), y - mean, S);
+    log_likelihood(j) = log_density_of_mode(y - mean, S);
   }
   return paths_.count() > 0 ? bayes(share_, log_likelihood, posterior) : not_a_number;
 }

@@ -37,8 +37,6 @@ SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed, Tran
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
       next_(bank.structure.dimension()) {
-  if (!bank.drift.empty())
-    throw std::invalid_argument("sample paths do not support drifting modes; use method = moments");
   if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
 }
 
@@ -64,7 +62,7 @@ void SamplePaths::start(const FilterMemory& origin) {
   noise_root_.clear();
   for (Index j = 0; j < bank_.mode_count(); ++j) {
     start_root.push_back(covariance_root(origin.covariances.col(j).reshaped(n, n)));
-    noise_.emplace_back(origin.noise_scale * bank_.modes[static_cast<std::size_t>(j)].Q);
+    noise_.emplace_back(bank_.modes[static_cast<std::size_t>(j)].Q);
     noise_root_.push_back(covariance_root(noise_.back()));
   }
   states_.resize(n, paths_);

@@ -12,9 +12,8 @@ namespace modebank {
 struct ScoringOptions {
   static inline const std::vector<Eigen::Index> default_horizon{1, 10};
   std::vector<Eigen::Index> horizon = default_horizon;  ///< horizons in samples; the summary already has horizon 1
-  bool smooth = true;            ///< whether to compute smoothed states and the most probable sequence of modes
-  FreeRunOptions free_run = {};  ///< options of free runs, with the seed of the whole chain
-  std::uint64_t seed = 1;        ///< seed for the transforms of quantised measurements; the seed of the whole chain
+  FreeRunOptions free_run = {};                         ///< options of free runs, with the seed of the whole chain
+  std::uint64_t seed = 1;  ///< seed for the transforms of quantised measurements; the seed of the whole chain
 };
 
 }  // namespace modebank

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "filter/learn/chain/stages.hpp"
+#include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 #include "ident/fit/fit_windows.hpp"
@@ -48,11 +49,6 @@ void tell_of(const Refinement& refined, const Progress& progress) {
                     s.width > 0.0 ? fmt::format(" (accepted, width {}{})", s.width,
                                                 std::isinf(s.memory_sd) ? "" : ", the previous mode hardly matters")
                                   : ": not taken"));
-  if (const DriftStage& s = refined.drift; !std::isnan(s.gain))
-    progress.progress(
-        fmt::format("refine: drift of {} modes (rate {:g}, start {:g}, leak {:g}) gains {:.4f} +- {:.4f} nats/sample "
-                    "on left-out runs: {}",
-                    s.modes, s.rate, s.start, s.leak, s.gain, s.gain_standard_error, s.taken ? "taken" : "not taken"));
   if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
     progress.progress("refine: fit to predictions up to bank.look_ahead samples ahead: " + worth_of(ahead));
 }
@@ -88,14 +84,27 @@ Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const Ba
   Refinement refined =
       learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
                        std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
-  const Bank& bank = refined.bank;
-  const DriftRates& rates = bank.drift.rates;
-  progress.progress(fmt::format("one_motion: {} noise levels{} in {:.2f} s", bank.mode_count(),
-                                bank.drift.empty() ? ""
-                                                   : fmt::format(", theta drifts (rate {:g}, start {:g}, leak {:g})",
-                                                                 rates.q, rates.p0, rates.leak),
-                                watch.seconds()));
+  progress.progress(fmt::format("one_motion: {} noise levels in {:.2f} s", refined.bank.mode_count(), watch.seconds()));
   return refined;
+}
+
+Bank learn_drifting(const LearnedFrom& from, const std::optional<Bank>& one_motion, const BankInputs& inputs,
+                    const Progress& progress) {
+  const Stopwatch watch;
+  const DriftingInputs& asked = *inputs.drifting;
+  const RefineOptions& em = inputs.bank.em;
+  const std::optional<Recording> part = learning_part(from.recording, em.transitions, em.seed);
+  const Recording& recording = part ? *part : from.recording;
+  const OneModel of = one_model(recording, from.windows, from.motion, asked.lags);
+  Bank bank = learn_likeliest_drifting(recording, of.global, of.structure, asked.horizon);
+  if (one_motion) bank = with_noise_levels(bank, *one_motion, recording, asked.horizon);
+  const DriftRates& rates = bank.drift.rates;
+  const RunningNoise& noise = bank.running_noise;
+  progress.progress(fmt::format(
+      "drifting: {} with {} lags, {} noise levels, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
+      name_of(bank.drift.wandering), bank.structure.state_lags, noise.levels(), rates.q, rates.p0, rates.leak,
+      noise.lam, noise.nu, watch.seconds()));
+  return bank;
 }
 
 }  // namespace modebank

@@ -93,9 +93,14 @@ class Run {
     part.bank = std::move(refined.bank);
     progress_.progress(fmt::format("bank: {} modes, {} removed as unusable, in {:.2f} s", part.bank->mode_count(),
                                    part.bank->screened.size(), watch.seconds()));
+    Refinement one_motion;
+    if (asked.one_motion) {
+      one_motion = learn_one_motion(from, *part.bank, asked, progress_);
+      part.one_motion = std::move(one_motion.bank);
+    }
+    if (asked.drifting) part.drifting = learn_drifting(from, part.one_motion, asked, progress_);
     if (!asked.one_motion) return part;
-    Refinement one_motion = learn_one_motion(from, *part.bank, asked, progress_);
-    part.one_motion = std::move(one_motion.bank);
+    learned_.drifting = part.drifting;
     part.left_out = score_left_out(
         recording_, learned_, asked,
         {{"bank", std::move(refined.of_splits)}, {"one_motion", std::move(one_motion.of_splits)}}, progress_);

@@ -6,12 +6,10 @@
 
 #include "filter/learn/chain/armax_bank.hpp"
 #include "filter/learn/chain/stages.hpp"
-#include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/learn.hpp"
 #include "filter/learn/refine/learning_part.hpp"
-#include "filter/learn/tuning.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/linearise.hpp"
@@ -42,17 +40,6 @@ OneModel one_model(const Recording& recording, const WindowFits& windows, const 
 }
 
 namespace {
-
-Bank drifting(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
-              const Progress& progress) {
-  const Stopwatch watch;
-  Bank bank = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
-  const DriftRates& rates = bank.drift.rates;
-  progress.progress(fmt::format("drifting: {} with {} lags, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
-                                name_of(bank.drift.wandering), bank.structure.state_lags, rates.q, rates.p0, rates.leak,
-                                bank.running_noise.lam, bank.running_noise.nu, watch.seconds()));
-  return bank;
-}
 
 /// The factor on the competitors' noise; empty if the noise has no factor.
 NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
@@ -117,9 +104,8 @@ std::optional<Bank> nonlinear(const Recording& recording, LinearStructure struct
   return bank;
 }
 
-/// The baseline: one Kalman filter on the global model. `filter`: options of the competitors' filter.
-Bank learn_single_filter(const Recording& recording, const OneModel& of, const FilterOptions& filter,
-                         const Progress& progress) {
+/// The baseline: one Kalman filter on the global model.
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const Progress& progress) {
   Baseline baseline = learn_baseline(recording, of.global, of.structure);
   baseline.bank.model = of.model;
   if (of.structure.inputs > 0)
@@ -129,8 +115,6 @@ Bank learn_single_filter(const Recording& recording, const OneModel& of, const F
   if (baseline.at_bound) progress.progress("baseline: R is at its lower bound: the data show no measurement noise");
   if (!baseline.converged)
     progress.warning("baseline: the search for its noise did not reach a maximum of the likelihood");
-  if (filter.noise == FilterNoise::adaptive)
-    baseline.bank.noise_adaptation = most_likely_adaptation(baseline.bank, recording, filter, refine_tuning);
   return std::move(baseline.bank);
 }
 
@@ -153,16 +137,11 @@ CompetitorsPart learn_competitors(const Recording& all, const WindowFits& window
   const OneModel linear = one_model(recording, windows, motion, inputs.linear);
   CompetitorsPart learned;
   if (inputs.single) learned.baseline = learn_single(recording, *inputs.single);
-  if (!learned.baseline) learned.baseline = learn_single_filter(recording, linear, inputs.filter, progress);
-  if (inputs.all)
-    learned.drifting = drifting(recording, one_model(recording, windows, motion, inputs.drifting), inputs, progress);
+  if (!learned.baseline) learned.baseline = learn_single_filter(recording, linear, progress);
   const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, progress);
   learned.noise_only = inputs.single && factor.empty()
                            ? noise_levels_of(*learned.baseline, recording)
                            : learn_noise_only(recording, linear.structure, learned.baseline->R, factor);
-  if (inputs.filter.noise == FilterNoise::adaptive)
-    learned.noise_only->noise_adaptation =
-        most_likely_adaptation(*learned.noise_only, recording, inputs.filter, refine_tuning);
   if (inputs.all) learned.nonlinear = nonlinear(recording, linear.structure, inputs, !factor.empty(), progress);
   return learned;
 }

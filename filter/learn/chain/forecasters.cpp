@@ -20,8 +20,7 @@ std::vector<Forecaster> forecasters_of(const Learning& learned, const FilterOpti
   std::vector<Forecaster> all;
   if (learned.bank) all.push_back({"bank", *learned.bank, filter});
   for (const char* name : competitor_names)
-    if (const std::optional<Bank> bank = learned.bank_of(name))
-      all.push_back({name, *bank, competitor_filter(name, filter)});
+    if (const std::optional<Bank> bank = learned.bank_of(name)) all.push_back({name, *bank, competitor_filter(name)});
   return all;
 }
 

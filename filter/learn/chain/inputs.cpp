@@ -27,13 +27,12 @@ BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window)
 }
 
 /// Whether to look for noise that follows the input. All later steps must support such noise. The conditions are: an
-/// IMM without adaptive noise; no logit, drift or look-ahead; R is neither given nor estimated in addition to rounding.
+/// IMM; no logit or look-ahead; R is neither given nor estimated in addition to rounding.
 NoiseByInput noise_by_input(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   const bool can = refinement_asked(bank, is_linear(window)) == Refine::em &&
                    bank.transition != TransitionSource::logit && !bank.measurement_variance &&
-                   bank.em.drift == Drift::none && bank.em.look_ahead == 1 &&
-                   options.filter.variant == FilterVariant::imm && options.filter.noise == FilterNoise::gaussian;
+                   bank.em.look_ahead == 1 && options.filter.variant == FilterVariant::imm;
   return can ? options.noise_by_input : NoiseByInput::none;
 }
 
@@ -43,14 +42,12 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
   RefineOptions em = options.bank.em;
   em.seed = options.seed;
   return {window,
-          competitor_filter("one_motion", options.filter),
-          options.scoring.horizon,
+          competitor_filter("one_motion"),
           options.bank.em.transitions,
           options.seed,
           rivals ? options.terms : "none",
           em,
           options.other_lags.linear,
-          options.other_lags.drifting,
           noise_by_input(options, window),
           single_model(options),
           options.competitors};
@@ -63,17 +60,14 @@ std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options)
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  return OneMotionInputs{learned, competitor_filter("one_motion", options.filter), options.scoring.horizon,
+  return OneMotionInputs{learned, competitor_filter("one_motion"), options.scoring.horizon,
                          options.other_lags.one_motion};
 }
 
 }  // namespace
 
-FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank) {
-  FilterOptions filter;
-  filter.variant = name == "baseline" ? FilterVariant::kf : FilterVariant::imm;
-  filter.noise = of_bank.noise;
-  return filter;
+FilterOptions competitor_filter(const std::string& name) {
+  return {name == "baseline" ? FilterVariant::kf : FilterVariant::imm};
 }
 
 namespace {
@@ -108,7 +102,10 @@ std::optional<StructureInputs> structure_inputs(const LearningOptions& options) 
 LearningInputs learning_inputs(const LearningOptions& options) {
   const FitOptions window = window_inputs(options);
   BankInputs bank = bank_inputs(options, window);
-  if (options.competitors) bank.one_motion = one_motion_inputs(options);
+  if (options.competitors) {
+    bank.one_motion = one_motion_inputs(options);
+    bank.drifting = DriftingInputs{options.scoring.horizon, options.other_lags.drifting};
+  }
   return {structure_inputs(options),
           {window},
           {window, options.mixture, options.seed},

@@ -31,17 +31,15 @@ struct SingleModel {
 /// at most as many noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;                  ///< filter of the competitors; needed for the memory of the noise scale
-  std::vector<Index> horizon;            ///< horizons at which `drifting` widens its predictions
+  FilterOptions filter;                  ///< filter of the competitors; needed for `nonlinear`
   Index transitions = 0;                 ///< largest number of transitions to learn from, as for the bank; 0 takes all
   std::uint64_t seed = 1;                ///< seed that selects these transitions
   std::string terms = "auto";            ///< terms of `nonlinear`
   RefineOptions em = {};                 ///< how `nonlinear` is learned
   std::optional<StageLags> linear = {};  ///< lags of `baseline`, `noise_only` and `nonlinear`; if empty, the lags of
                                          ///< the windows
-  std::optional<StageLags> drifting = {};  ///< lags of `drifting`; if empty, the lags of the windows
 
-  /// Needed for the bank, and for all competitors except `baseline` and `drifting`.
+  /// Needed for the bank, and for all competitors except `baseline`.
   NoiseByInput noise_by_input = NoiseByInput::none;
   std::optional<SingleModel> single = {};  ///< the linear stage's model; empty if `baseline` is least squares
   bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
@@ -56,12 +54,19 @@ struct OneMotionInputs {
   std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used
 };
 
+/// Inputs of the competitor `drifting`. It has the noise levels of `one_motion`, if that exists.
+struct DriftingInputs {
+  std::vector<Index> horizon = {};     ///< horizons at which it widens its predictions
+  std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used
+};
+
 struct BankInputs {
   FitOptions window;
   BankOptions bank;        ///< bank options with the chain's seed
   bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
   std::optional<FilterOptions> filter;             ///< set if learning uses the filter, that is for refinement
   std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter
+  std::optional<DriftingInputs> drifting = {};     ///< empty if the bank has no competitors but the baseline
   std::optional<SingleModel> single = {};          ///< as in CompetitorInputs
   bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
                               ///< left out
@@ -83,8 +88,8 @@ struct LearningInputs {
   BankInputs bank;
 };
 
-/// Filter options of a competitor: its own kind of filter, with the bank's noise and time steps.
-FilterOptions competitor_filter(const std::string& name, const FilterOptions& of_bank);
+/// Filter options of a competitor: its own kind of filter.
+FilterOptions competitor_filter(const std::string& name);
 
 /// Splits the options into the inputs of each stage.
 LearningInputs learning_inputs(const LearningOptions& options);

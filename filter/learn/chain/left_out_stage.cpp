@@ -39,7 +39,7 @@ Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training
 /// The filters learned without the left-out runs of a split. Some come from refinement; the other filters get new
 /// coefficients. A few numbers are not learned again: Q and R of a baseline that is
 /// not of the linear stage, and the rates of `drifting`.
-Learning learned_on(const CompetitorsPart& learned, const Recording& training, const BankInputs& inputs,
+Learning learned_on(const Learning& learned, const Recording& training, const BankInputs& inputs,
                     const OfSplits& of_splits, std::size_t split) {
   Learning anew;
   for (const auto& [name, banks] : of_splits) (name == "bank" ? anew.bank : anew.one_motion) = banks.at(split);
@@ -55,7 +55,6 @@ Learning learned_on(const CompetitorsPart& learned, const Recording& training, c
                           ? noise_levels_of(*anew.baseline, training)
                           : learn_noise_only(training, learned.noise_only->structure, anew.baseline->R,
                                              learned.noise_only->noise_factor);
-    anew.noise_only->noise_adaptation = learned.noise_only->noise_adaptation;
   }
   if (learned.drifting)
     anew.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
@@ -65,8 +64,8 @@ Learning learned_on(const CompetitorsPart& learned, const Recording& training, c
 
 }  // namespace
 
-std::vector<LeftOutRow> score_left_out(const Recording& recording, const CompetitorsPart& learned,
-                                       const BankInputs& inputs, const OfSplits& of_splits, const Progress& progress) {
+std::vector<LeftOutRow> score_left_out(const Recording& recording, const Learning& learned, const BankInputs& inputs,
+                                       const OfSplits& of_splits, const Progress& progress) {
   if (!inputs.one_motion || !inputs.filter) return {};
   const Stopwatch watch;
   const RefineOptions& em = inputs.bank.em;

@@ -30,13 +30,14 @@ struct MixturePart {
 struct CompetitorsPart {
   std::optional<Bank> baseline;        ///< one Kalman filter
   std::optional<Bank> noise_only;      ///< one motion; only its noise switches
-  std::optional<Bank> drifting;        ///< one linear motion whose coefficients drift, with running noise
   std::optional<Bank> nonlinear = {};  ///< one nonlinear motion; empty if no term gains on the training runs
 };
 
 struct BankPart {
   std::optional<Bank> bank;
   std::optional<Bank> one_motion;  ///< `one_motion`: learned like the bank, with one theta
+  std::optional<Bank> drifting;    ///< one linear motion whose coefficients drift, with running noise that has the
+                                   ///< noise levels of `one_motion`
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
   Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions

@@ -62,11 +62,14 @@ Refinement learn_modes(const LearnedFrom& from, const BankInputs& inputs, const 
 Refinement learn_one_motion(const LearnedFrom& from, const Bank& bank, const BankInputs& inputs,
                             const Progress& progress);
 
+/// Learns the competitor drifting, with the noise levels of `one_motion` if it is there.
+Bank learn_drifting(const LearnedFrom& from, const std::optional<Bank>& one_motion, const BankInputs& inputs,
+                    const Progress& progress);
+
 /// Scores of bank, competitors and their combination on the training runs. Each run is scored by filters learned
 /// without it. Empty if no run was left out. `of_splits`: banks and `one_motion` of each split. The other filters are
 /// learned here.
-std::vector<LeftOutRow> score_left_out(const Recording& recording, const CompetitorsPart& learned,
-                                       const BankInputs& inputs,
+std::vector<LeftOutRow> score_left_out(const Recording& recording, const Learning& learned, const BankInputs& inputs,
                                        const std::vector<std::pair<std::string, std::vector<Bank>>>& of_splits,
                                        const Progress& progress);
 

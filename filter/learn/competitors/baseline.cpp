@@ -119,8 +119,9 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
     return {bank, training_log_likelihood(bank, training, {FilterVariant::kf}), true, true};
 
   const Eigen::VectorXd scale = global.noise_variance().unaryExpr(&positive_variance);
-  NoiseSearch search{
-      {training, {FilterVariant::kf}, std::nullopt}, scale, measurement_bound(structure, global.theta, scale)};
+  NoiseSearch search{{training, {FilterVariant::kf}, std::nullopt},
+                     scale,
+                     measurement_bound(structure, global.theta, scale).cwiseMax(bank.rounding_variance())};
   if (bank.is_quantised())  // least squares takes rounding for process noise
     search.theta_unit = global.covariance.diagonal().cwiseSqrt().unaryExpr(&positive_variance);
   std::vector<Index> outputs(static_cast<std::size_t>(n));

@@ -58,7 +58,7 @@ void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) 
   bank.drift.rates = {chosen(grid.q, 0), chosen(grid.p0, 1), chosen(grid.leak, 2)};
   bank.running_noise.lam = chosen(grid.lam, 3);
   bank.running_noise.nu = chosen(grid.nu, 4);
-  bank.running_noise.floor = chosen(grid.floor, 5) * bank.noise_variance();
+  bank.running_noise.floor = (chosen(grid.floor, 5) * bank.noise_variance()).cwiseMax(bank.rounding_variance());
   bank.drift.tuning = {scores.log_score(best), scores.samples};
 }
 
@@ -81,7 +81,7 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
     double sum = 0.0;
     for (const DriftingForecasts& run : runs)
       for (Index k = 0; k < run.whitened[horizon].cols(); ++k)
-        if (!std::isnan(run.whitened[horizon](0, k))) sum += widening_gain(noise, run.whitened[horizon].col(k), factor);
+        if (!std::isnan(run.whitened[horizon](0, k))) sum += widening_gain(noise, run, horizon, k, factor);
     return sum;
   };
   Index best = 0;
@@ -97,7 +97,10 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
   return best;
 }
 
+}  // namespace
+
 void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Index>& horizons) {
+  bank.running_noise.horizon_factor.clear();
   const std::vector<DriftingForecasts> runs = training_forecasts(bank, recording, horizons);
   if (runs.empty()) return;
   const std::vector<Index>& ascending = runs.front().predictions.horizons;
@@ -108,8 +111,6 @@ void choose_horizon_factors(Bank& bank, const Recording& recording, const std::v
     bank.running_noise.horizon_factor.emplace_back(ascending[h], std::exp2(0.25 * static_cast<double>(best)));
   }
 }
-
-}  // namespace
 
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                     const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {

@@ -59,6 +59,15 @@ Bank learn_drifting(const Recording& recording, const GlobalModel& global, const
                     const std::vector<Eigen::Index>& horizons, const DriftingGrid& grid = {},
                     Wandering wandering = Wandering::all);
 
+/// Chooses the variance's factor of each horizon from 2 on, as learn_drifting.
+void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Eigen::Index>& horizons);
+
+/// The model with noise levels: the variances of the modes of `one_motion`, which differ in noise alone, and their
+/// transition matrix. All other settings are chosen again: two climbs, setting by setting, to the best log score of the
+/// training runs one sample ahead. `drifting` itself if it scores as well there, or if `one_motion` has one level.
+Bank with_noise_levels(const Bank& drifting, const Bank& one_motion, const Recording& recording,
+                       const std::vector<Eigen::Index>& horizons);
+
 /// A model with the settings of `like`. theta0 and the variances come from these training runs.
 Bank relearn_drifting(const Bank& like, const Recording& recording, const GlobalModel& global);
 

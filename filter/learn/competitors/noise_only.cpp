@@ -97,9 +97,9 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
 
 namespace {
 
-/// Improves theta and noise levels of rounded states by the likelihood of their intervals. The search starts from the
-/// residuals of rounded values, which include the rounding.
-Bank by_intervals(Bank bank, const Recording& recording) {
+/// Improves theta and noise levels of rounded states by the filter's likelihood, whose R has the rounding. The search
+/// starts from the residuals of rounded values, which include the rounding, too.
+Bank beside_rounding(Bank bank, const Recording& recording) {
   FreeParameters free;
   // The runs do not determine some directions. These may have any unit, because nothing depends on them.
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
@@ -130,7 +130,7 @@ Bank noise_levels_of(const Bank& single, const Recording& recording) {
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor) {
   Bank bank = learn_noise_levels(recording, structure, R, noise_only_levels, factor);
-  return bank.is_quantised() ? by_intervals(std::move(bank), recording) : bank;
+  return bank.is_quantised() ? beside_rounding(std::move(bank), recording) : bank;
 }
 
 }  // namespace modebank

@@ -163,7 +163,6 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   RefineOptions em = options;
   em.one_theta = true;
   em.state_dependent_transition = false;
-  em.drift = {};
   em.restarts = 0;
   em.look_ahead = 1;
   em.measurement_noise = false;

@@ -68,18 +68,4 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, 
   return learned;
 }
 
-NoiseAdaptation most_likely_adaptation(const Bank& bank, const Recording& recording, const FilterOptions& filter,
-                                       const RefineTuning& tuning) {
-  Bank candidate = bank;
-  std::vector<std::pair<double, NoiseAdaptation>> tried;
-  for (const double forgetting : tuning.forgettings)
-    for (const double prior : tuning.noise_prior_samples) {
-      candidate.noise_adaptation = {forgetting, prior};
-      tried.emplace_back(training_log_likelihood(candidate, recording, filter), candidate.noise_adaptation);
-    }
-  return std::max_element(tried.begin(), tried.end(),
-                          [](const auto& a, const auto& b) { return is_below(a.first, b.first); })
-      ->second;
-}
-
 }  // namespace modebank

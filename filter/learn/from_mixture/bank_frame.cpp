@@ -43,6 +43,7 @@ Bank bank_frame(const Recording& recording, const LinearStructure& structure, co
   bank.C = Eigen::MatrixXd::Identity(n, structure.dimension());
   bank.R = R;
   bank.quantum = recording.quantum;
+  bank.R = bank.recording_noise();
   bank.state_names = state_names(recording, structure);
   bank.input_names = input_names(recording, structure);
   bank.dt_s = training_part(recording).median_period_s();

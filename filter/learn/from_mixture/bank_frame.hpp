@@ -10,9 +10,9 @@
 namespace modebank {
 
 /// A bank without modes: structure, measurement, names and sample period of the training data. C = [I 0] selects the
-/// newest sample of z; R is given; the quanta are those of the recording. A lagged state is called "wz[k-1]". Throws
-/// std::invalid_argument unless R has one row per measured state and the structure has the states and inputs of the
-/// recording.
+/// newest sample of z; the quanta are those of the recording; R is given, and at least the variance of rounding. A
+/// lagged state is called "wz[k-1]". Throws std::invalid_argument unless R has one row per measured state and the
+/// structure has the states and inputs of the recording.
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
 /// Names of a bank's states and inputs, from the recording's columns.

@@ -200,6 +200,7 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
   if (motion) bank.motion_parameters = motion->parameters();
   if (options.measurement_variance)
     bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
+  bank.R = bank.recording_noise();
   const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
                                                  : all_positions(components.components());
   if (kept.empty()) return bank_of_all(recording, fits, mixture, options, bank, motion);

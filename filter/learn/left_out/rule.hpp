@@ -32,7 +32,7 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// has expectation one, and Markov's inequality bounds its tail.
 double least_worth(double samples);
 
-/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, drift, a
+/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, a
 /// look-ahead fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
 /// which is capped at `most_error`. `samples`: number of samples of each left-out run.
 /// Other rules are worse. The standard error alone accepts additions to three of ten systems

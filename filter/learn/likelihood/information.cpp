@@ -76,7 +76,6 @@ SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eige
                         predictive_log_densities(transitions, switching_model(around.decode(-step)))) /
                        (2.0 * steps(c));
   });
-  gradients = gradients.array().isNaN().select(0.0, gradients).eval();
   SampleGradients result{gradients.colwise().sum().transpose(), Eigen::MatrixXd::Zero(around.size(), around.size())};
   result.information.selfadjointView<Eigen::Lower>().rankUpdate(gradients.transpose());
   result.information.triangularView<Eigen::StrictlyUpper>() = result.information.transpose();

@@ -58,11 +58,10 @@ void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& p
 }
 
 /// Whether states count as measured exactly because R is at its bound.
-bool is_exact(const LikelihoodTarget& target, const BankCoordinates& around) {
+bool is_exact(const BankCoordinates& around) {
   const Bank& bank = around.origin();
   return around.places().outputs == 0 && (bank.R.diagonal().array() <= around.least_R().array()).all() &&
-         target.filter.noise == FilterNoise::gaussian && !bank.is_quantised() && bank.drift.empty() &&
-         bank.terms.empty();
+         !bank.is_quantised() && bank.terms.empty();
 }
 
 /// Empty if the information matrix is singular.
@@ -71,11 +70,10 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
   const Recording& recording = samples.part ? *samples.part : target.recording;
   const SampleGradients gradients =
-      is_exact(target, around)
-          ? exact_sample_gradients(
-                around, steps,
-                gather_training_transitions(recording, around.origin().structure, around.origin().noise_factor))
-          : sample_gradients(around, steps, recording, target.filter);
+      is_exact(around) ? exact_sample_gradients(around, steps,
+                                                gather_training_transitions(recording, around.origin().structure,
+                                                                            around.origin().noise_factor))
+                       : sample_gradients(around, steps, recording, target.filter);
   const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude, so the correlation matrix is factorised.
@@ -175,7 +173,7 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
     });
   if (estimate_R) free.R.resize(static_cast<std::size_t>(bank.R.rows()));
   std::iota(free.R.begin(), free.R.end(), Index{0});
-  free.least_R = least_R;
+  if (least_R.size() > 0) free.least_R = least_R.cwiseMax(bank.rounding_variance());
   free.transition = bank.mode_count() > 1;
   if (!bank.transition_logit.empty()) free.weight_unit = weight_unit_share * prior.weight_sd;
   return free;

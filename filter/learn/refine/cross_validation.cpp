@@ -14,24 +14,6 @@
 namespace modebank {
 namespace {
 
-/// Chooses the noise adaptation. Candidates are within one standard error of the best over left-out runs (Breiman et
-/// al. 1984, section 3.4.3). The candidate whose scale leaves its start soonest is taken. The reason: new runs differ
-/// more from the training runs than the training runs differ from each other. `scores`: scores of each candidate, one
-/// per run. `samples`: number of samples of each run.
-std::size_t soonest_of_the_good(const std::vector<NoiseAdaptation>& ways, const std::vector<Eigen::VectorXd>& scores,
-                                const Eigen::VectorXd& samples) {
-  const auto lower = [](const Eigen::VectorXd& a, const Eigen::VectorXd& b) { return is_below(a.sum(), b.sum()); };
-  const std::size_t best = std::max_element(scores.begin(), scores.end(), lower) - scores.begin();
-  std::size_t chosen = best;
-  for (std::size_t w = 0; w < ways.size(); ++w) {
-    const PairedLoss loss = paired_loss(scores[best], scores[w], samples);
-    if (!(loss.mean <= loss.standard_error)) continue;
-    const double sooner = ways[chosen].prior_samples - ways[w].prior_samples;
-    if (sooner > 0.0 || (sooner == 0.0 && lower(scores[chosen], scores[w]))) chosen = w;
-  }
-  return chosen;
-}
-
 std::vector<Index> checkpoints_up_to(Index limit, const RefineTuning& tuning) {
   std::vector<Index> list;
   for (const Index checkpoint : tuning.checkpoints)
@@ -126,29 +108,6 @@ std::vector<Fit> CrossValidation::best_of_starts() const {
     return better > 0.0 || (!(better < 0.0) && a.row < b.row);
   });
   return fits;
-}
-
-std::vector<Fit> CrossValidation::best_of_each_size() const {
-  std::vector<Fit> fits;
-  for (Fit& fit : best_of_starts()) {
-    const auto as_many = [&](const Fit& f) { return f.start.model.modes() == fit.start.model.modes(); };
-    if (std::none_of(fits.begin(), fits.end(), as_many)) fits.push_back(std::move(fit));
-  }
-  return fits;
-}
-
-NoiseAdaptation CrossValidation::adaptation(const std::vector<Bank>& of_splits) const {
-  if (splits_.empty() || in_.filter.noise != FilterNoise::adaptive) return {};
-  std::vector<NoiseAdaptation> ways;
-  for (const double forgetting : refine_tuning.forgettings)
-    for (const double prior : refine_tuning.noise_prior_samples) ways.push_back({forgetting, prior});
-  std::vector<Eigen::VectorXd> scores(ways.size());
-  tbb::parallel_for(std::size_t{0}, ways.size(), [&](std::size_t w) {
-    std::vector<Bank> banks = of_splits;
-    for (Bank& bank : banks) bank.noise_adaptation = ways[w];
-    scores[w] = run_scores(banks, look_);
-  });
-  return ways[soonest_of_the_good(ways, scores, samples_)];
 }
 
 Eigen::VectorXd CrossValidation::run_scores(const std::vector<Bank>& banks, const LookAhead& look) const {

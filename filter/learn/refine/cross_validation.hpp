@@ -14,7 +14,7 @@
 
 namespace modebank {
 
-/// Scores of training runs that were left out, for every start, number of iterations and noise adaptation. For each
+/// Scores of training runs that were left out, for every start and number of iterations. For each
 /// start it stores the fit after the best number of iterations. Holds references to its inputs.
 class CrossValidation {
  public:
@@ -36,8 +36,6 @@ class CrossValidation {
 
   /// The best fit of every start, in decreasing order of score.
   std::vector<Fit> best_of_starts() const;
-  /// The best fit of every number of modes, in decreasing order of score.
-  std::vector<Fit> best_of_each_size() const;
 
   /// Log-likelihoods of the left-out runs; `banks`: one per split.
   LeftOutScores scores(const std::vector<Bank>& banks) const { return scores(banks, look_); }
@@ -47,10 +45,6 @@ class CrossValidation {
   }
   /// Mean over all samples [nats]; minus infinity if a score is NaN.
   double mean_score(const LeftOutScores& scores) const;
-
-  /// Chooses the noise adaptation for the filter of these banks, one per split. If the left-out runs cannot separate
-  /// several adaptations, the one whose scale leaves its start soonest is chosen.
-  NoiseAdaptation adaptation(const std::vector<Bank>& of_splits) const;
 
  private:
   /// Score of each left-out run.

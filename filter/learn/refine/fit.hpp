@@ -31,8 +31,6 @@ struct Fit {
                                      ///< runs
   LeftOutScores scores = {};         ///< scores on the left-out runs
   std::vector<Bank> of_splits = {};  ///< the fit without the left-out runs of each split; empty if no run is left out
-  BankDrift drift = {};              ///< drift of the modes; empty without drift
-  NoiseAdaptation adaptation = {};   ///< noise adaptation of the filter with drifting modes
 
   // The fields below are set after expectation-maximisation on all training runs:
   Bank bank = {};

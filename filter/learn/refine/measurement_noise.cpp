@@ -29,24 +29,24 @@ double least_rise(const LikelihoodTarget& target) {
   return samples * refine_tuning.least_gain;
 }
 
-/// The bank with R = `share` of the mean Q, subtracted from Q. Measurement noise of variance r raises the residual
-/// variance of exact states by about 2 r.
+/// The bank with `share` of the mean Q in R, subtracted from Q. Measurement noise of variance r raises the residual
+/// variance of exact states by about 2 r. R begins at the variance of rounding.
 Bank with_share_as_R(Bank bank, double share) {
   const Index n_y = bank.R.rows();
   Eigen::VectorXd mean_Q = Eigen::VectorXd::Zero(n_y);
   for (const Mode& mode : bank.modes) mean_Q += mode.weight * mode.Q.diagonal().head(n_y);
-  bank.R = (share * mean_Q).asDiagonal();
+  bank.R = (bank.rounding_variance() + share * mean_Q).asDiagonal();
   for (Mode& mode : bank.modes) mode.Q *= 1.0 - 2.0 * share;
   return bank;
 }
 
 /// The free parameters are R of every output and one factor on Q.
-FreeParameters free_noise(Index n_y) {
+FreeParameters free_noise(const Bank& bank) {
   FreeParameters free;
   free.Q_by_one_factor = true;
-  free.R.resize(static_cast<std::size_t>(n_y));
+  free.R.resize(static_cast<std::size_t>(bank.R.rows()));
   std::iota(free.R.begin(), free.R.end(), Index{0});
-  free.least_R = Eigen::VectorXd::Zero(n_y);
+  free.least_R = bank.rounding_variance();
   free.transition = false;
   return free;
 }
@@ -90,7 +90,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
                                         const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                         const Bank& bank) {
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
-  FreeParameters free = free_noise(bank.R.rows());
+  FreeParameters free = free_noise(bank);
   const Eigen::VectorXd least_R = least_measurement_noise(in.fits, refine_tuning);
   free.theta_unit = all_parameters(bank, sums, prior, in.options.one_theta, false, least_R).theta_unit;
   if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters) return std::nullopt;
@@ -126,9 +126,7 @@ MeasurementNoise find_R(const LikelihoodTarget& target, const RefineInput& in, c
 class MeasuredSplits {
  public:
   MeasuredSplits(const RefineInput& in, const CrossValidation& validation, const Fit& exact)
-      : in_(in), validation_(validation), exact_(exact), banks_(exact.of_splits) {
-    for (Bank& bank : banks_) bank.noise_adaptation = exact.bank.noise_adaptation;
-  }
+      : in_(in), validation_(validation), exact_(exact), banks_(exact.of_splits) {}
 
   const std::vector<Bank>& banks() const { return banks_; }
   /// Mean log score of the left-out runs.
@@ -175,7 +173,7 @@ MeasurementNoise estimate_measurement_noise(const LikelihoodTarget& target, cons
                                             const RefineTuning& tuning) {
   const double transitions = static_cast<double>(target.recording.transitions(Role::train));
   const double level = target.value(bank) + least_rise(target);
-  const FreeParameters free = free_noise(bank.R.rows());
+  const FreeParameters free = free_noise(bank);
   const std::vector<Bank> starts = starts_of_R(target, free, bank, level, tuning);
   std::vector<LikelihoodMaximum> ends(starts.size());
   WorkCounter counter("searches for measurement noise", ends.size());
@@ -274,7 +272,7 @@ Fit fit_untimed(const RefineInput& in, const CrossValidation& validation, const 
   if (asks_for_R && (with_R || quantised ||
                      (fit.bank.R.diagonal().array() > least_measurement_noise(in.fits, refine_tuning).array()).any()))
     go_on(in, exact.prior, splits, fit, stage);
-  // If states count as exact, Q includes the rounding. Only a fit to the intervals separates rounding from Q.
+  // If states count as exact, Q includes the rounding. Only a fit with R separates rounding from Q.
   if (with_R && quantised && take_R(in, exact.prior, splits, fit, stage)) go_on(in, exact.prior, splits, fit, stage);
   if (splits) fit.of_splits = splits->banks();
   return fit;

@@ -40,8 +40,8 @@ SwitchingPrior prior_with_states_unknown(const SwitchingPrior& exact, const Bank
 ///   left-out runs lose more than least_gain, and only if the splits mostly_have it.
 /// - theta, Q, R and T then maximise the filter's likelihood together. The result is kept if it gains on left-out
 ///   runs. Each run is scored by a fit whose R, prior and other parameters come from the other runs.
-/// - Rounded states are unknown for any R. Their fit always continues in this way, and R is searched afterwards,
-///   because the likelihood then already explains the rounding.
+/// - Rounded states are unknown: R is at least the variance of rounding. Their fit always continues in this way, and
+///   more R is searched afterwards, because the likelihood then already explains the rounding.
 /// - With more than eight state lags, R is not searched.
 /// `exact`: the fit with exact states, with its bank and prior. `stage` records the result.
 Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, const Fit& exact,

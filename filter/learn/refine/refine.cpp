@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "filter/learn/refine/cross_validation.hpp"
-#include "filter/learn/refine/drift.hpp"
 #include "filter/learn/refine/look_ahead_fit.hpp"
 #include "filter/learn/refine/measurement_noise.hpp"
 #include "filter/learn/refine/state_dependent_transition.hpp"
@@ -18,10 +17,10 @@ namespace modebank {
 namespace {
 
 /// The parts that are not refined. R of a start is not kept: the fit treats states as measured exactly, so R is already
-/// included in Q.
+/// included in Q. Only the variance of rounding stays.
 Bank frame_of(const Bank& start, const RefineOptions& options) {
   Bank frame = start;
-  if (options.measurement_noise) frame.R.setZero();
+  if (options.measurement_noise) frame.R = frame.rounding_variance().asDiagonal();
   return frame;
 }
 
@@ -97,23 +96,14 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (options.state_dependent_transition)
     if (std::optional<Fit> with_logit = choose_state_dependent_transition(in, validation, result.switching))
       chosen = std::move(*with_logit);
-  if (options.drift != Drift::none)
-    if (std::optional<Fit> drifts = choose_drift(in, validation, chosen, chosen.logit_prior.width == 0.0, result.drift))
-      chosen = std::move(*drifts);
   chosen.prior = with_logit_prior(in.prior(chosen.start), transitions, chosen.logit_prior);
   const TrainingFit fit = fit_exactly(in, chosen, chosen.prior);
   result.candidates = validation.table(chosen.row);
   result.objective = fit.objective;
-  const bool drifts = !chosen.drift.empty();
-  chosen.bank = bank_of_fit(in, fit, drifts ? chosen.adaptation : validation.adaptation(chosen.of_splits));
-  if (!drifts) chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
-  // For drifting modes, standard errors belong to the likelihood without drift, because the fit maximises that
-  // likelihood.
-  const FilterOptions maximised = result.measurement.iterations > 0 ? learning_filter(filter) : exact_filter(filter);
-  chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, maximised, chosen.bank);
-  if (drifts)
-    chosen.bank = with_drift(chosen.bank, chosen);
-  else if (std::optional<Fit> ahead = fit_looking_ahead(in, validation, chosen, result.look_ahead))
+  chosen.bank = bank_of_fit(in, fit);
+  chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
+  chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, learning_filter(filter), chosen.bank);
+  if (std::optional<Fit> ahead = fit_looking_ahead(in, validation, chosen, result.look_ahead))
     chosen = std::move(*ahead);
   result.bank = std::move(chosen.bank);
   result.of_splits = std::move(chosen.of_splits);

@@ -30,7 +30,6 @@ struct Refinement {
                                   ///< before the iteration
   MeasurementStage measurement;
   SwitchingStage switching = {};
-  DriftStage drift = {};
   LookAheadStage look_ahead = {};
   /// The fits to the training part of each split (validation_splits), in the order of the splits. They are used for
   /// scores on unseen runs. Empty if no run was left out.
@@ -41,7 +40,7 @@ struct Refinement {
 
 /// Expectation-maximisation of the switching model (switching_regression.hpp), starting from banks of mixtures.
 /// - The score of left-out training runs, in the bank's own filter, decides the start and the number of iterations.
-///   For an adaptive filter it also decides how the noise scale adapts. Held-out runs are never used.
+///   Held-out runs are never used.
 /// - Among starts that are as good as the best, the one with the fewest modes is chosen (fewest_modes_as_good).
 /// - The last fit uses all training runs. Unstable, starved and duplicate modes are then removed and listed, and the
 ///   other modes are refined further.
@@ -57,8 +56,8 @@ struct Refinement {
 /// (measurement_noise.hpp) and kept if the result is better. If R is estimated or given, the fit continues with unknown
 /// states: theta, Q, R and T together maximise the filter's likelihood of the training runs. This likelihood is exact
 /// for one mode; for several it is the approximation of the IMM. The result is kept unless it costs more than
-/// least_gain (tuning.hpp) on the left-out runs. If modes drift (choose_drift, drift.hpp), R is zero. Requires linear
-/// or lagged linear banks of one structure; throws std::invalid_argument for a motion model.
+/// least_gain (tuning.hpp) on the left-out runs. Requires linear or lagged linear banks of one structure; throws
+/// std::invalid_argument for a motion model.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
 

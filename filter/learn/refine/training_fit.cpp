@@ -42,10 +42,9 @@ TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& 
   return fit;
 }
 
-Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation) {
+Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit) {
   Bank bank = with_modes(in.frame, fit.model);
   bank.screened = fit.screened;
-  bank.noise_adaptation = adaptation;
   const Eigen::VectorXd transitions =
       (fit.posterior.probability.transpose() * in.transitions.usable).cwiseMax(std::numeric_limits<double>::min());
   for (Index j = 0; j < transitions.size(); ++j)
@@ -69,12 +68,6 @@ FilterOptions learning_filter(const FilterOptions& filter) {
   FilterOptions learning = filter;
   learning.variant = FilterVariant::imm;
   return learning;
-}
-
-FilterOptions exact_filter(const FilterOptions& filter) {
-  FilterOptions exact = learning_filter(filter);
-  exact.noise = FilterNoise::gaussian;
-  return exact;
 }
 
 }  // namespace modebank

@@ -45,10 +45,10 @@ TrainingFit fit_training_runs(const RefineInput& in, const SwitchingRegression& 
                               Index iterations);
 
 /// The fit as a bank, without standard errors. The weight of a mode is its share of the transitions.
-Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit, const NoiseAdaptation& adaptation);
+Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit);
 
 /// The bank of this fit with standard errors (likelihood/standard_errors.hpp), in the filter whose likelihood the fit
-/// maximises: exact_filter or learning_filter. `estimated_R`: whether R is among the estimated parameters.
+/// maximises (learning_filter). `estimated_R`: whether R is among the estimated parameters.
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
                  const FilterOptions& filter, const Bank& bank);
 
@@ -58,11 +58,5 @@ Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuni
 /// The filter whose likelihood is maximised with measurement noise: the bank's filter as an IMM that does not adapt
 /// parameters.
 FilterOptions learning_filter(const FilterOptions& filter);
-
-/// The filter whose likelihood expectation-maximisation raises: learning_filter with the same noise in every run. An
-/// adaptive filter would give less weight to runs with large noise. This estimate gives all runs equal weight, so
-/// standard errors in an adaptive filter would be too small. If some runs have noise of standard deviation 0.4 and
-/// others of 2, they are half of theta's actual error (standard_errors_test.cpp).
-FilterOptions exact_filter(const FilterOptions& filter);
 
 }  // namespace modebank

@@ -12,9 +12,15 @@ namespace modebank::small {
 
 using Eigen::Index;
 
+/// A number of rows or columns that matter. Fixed sizes take all, so that loops have constant lengths.
+template <int N>
+constexpr Index or_all(Index count) {
+  return N == Eigen::Dynamic ? count : N;
+}
+
 /// out = a b'. Only the first `seen` columns of b are nonzero. Requires seen >= 1; `out` must not alias.
 template <class Out, class A, class B>
-void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
+[[gnu::always_inline]] inline void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
     for (Index i = 0; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(j, 0);
@@ -33,7 +39,7 @@ void multiply_transposed(Out& out, const A& a, const B& b) {
 /// columns. Only the first `inner` columns of `out` are written. The bits equal those of `multiply` if b is finite.
 /// With full = a.rows(), `a` may be any matrix.
 template <class Out, class A, class B>
-void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
+[[gnu::always_inline]] inline void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
   for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
     for (Index i = 0; i < full; ++i) {
       double sum = a(i, 0) * b(0, j);
@@ -46,7 +52,7 @@ void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner
 
 /// out = a b. Requires an inner size >= 1; `out` must not alias.
 template <class Out, class A, class B>
-void multiply(Out& out, const A& a, const B& b) {
+[[gnu::always_inline]] inline void multiply(Out& out, const A& a, const B& b) {
   for (Index j = 0; j < b.cols(); ++j)
     for (Index i = 0; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(0, j);
@@ -58,7 +64,8 @@ void multiply(Out& out, const A& a, const B& b) {
 /// out += a b'. b is as in multiply_shifting. The columns of `a` from `inner` on are zero. The product must be
 /// symmetric (see add_symmetric_product).
 template <class Out, class A, class B>
-void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
+[[gnu::always_inline]] inline void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full,
+                                                                  Index inner) {
   const Index rows = std::min(a.rows(), inner + full);
   for (Index j = 0; j < rows; ++j)
     for (Index i = j; i < rows; ++i) {
@@ -77,7 +84,7 @@ void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full
 /// out = a b. `a` differs from the identity only in its first `seen` columns. The bits equal those of `multiply` if b
 /// is finite. With seen = a.cols(), `a` may be any matrix.
 template <class Out, class A, class B>
-void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
+[[gnu::always_inline]] inline void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.cols(); ++j)
     for (Index i = 0; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(0, j);
@@ -88,7 +95,7 @@ void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
 
 /// out += a b', with `a` and b as in multiply_seeing. The product must be symmetric (see add_symmetric_product).
 template <class Out, class A, class B>
-void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
+[[gnu::always_inline]] inline void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
   for (Index j = 0; j < b.rows(); ++j)
     for (Index i = j; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(j, 0);

@@ -24,6 +24,10 @@ inline constexpr double least_variance = 1e-40;
 /// Lower bound of log densities.
 inline constexpr double lowest_log_density = -1e300;
 
+/// Log density of a measurement. NaN, from an overflow, has the lowest value, too: a filter that failed at a sample is
+/// not one that did not measure it.
+inline double measured_density(double value) { return value > lowest_log_density ? value : lowest_log_density; }
+
 /// A measurement counts as missing if it is NaN, infinite, or at least this large.
 inline constexpr double largest_measurement = 1e30;
 
@@ -40,8 +44,5 @@ auto missing_entries(const Y& y) {
 /// Smallest pivot of a covariance, as a share of its diagonal entry. Smaller pivots are rounding errors. Raising a
 /// pivot to this bound is the same as adding the difference to the diagonal.
 inline constexpr double relative_pivot_floor = 1e-14;
-
-/// Largest innovation for adaptive noise, in standard deviations. It limits the effect of one outlier on the scale.
-inline constexpr double largest_standardised = 5.0;
 
 }  // namespace modebank

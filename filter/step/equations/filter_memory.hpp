@@ -21,9 +21,6 @@ void save(const FilterState<N>& state, FilterMemory& memory) {
     memory.covariances.col(j) = state.modes[static_cast<std::size_t>(j)].covariance.reshaped();
   }
   memory.mode_probability = state.mode_probability;
-  memory.noise_scale = state.noise_scale;
-  memory.noise_samples = state.noise_samples;
-  memory.drift = state.drift;
 }
 
 /// Number of uncertain rows of these estimates. Rows after these have the same mean in all estimates, and zero
@@ -52,9 +49,6 @@ void restore(const FilterMemory& memory, bool exact, FilterState<N>& state) {
   const Eigen::Index uncertain = exact ? uncertain_rows_of(state.modes) : n;
   for (Gaussian<N>& mode : state.modes) mode.uncertain = uncertain;
   state.mode_probability = memory.mode_probability;
-  state.noise_scale = memory.noise_scale;
-  state.noise_samples = memory.noise_samples;
-  state.drift = memory.drift;
 }
 
 }  // namespace modebank

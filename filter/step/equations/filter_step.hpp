@@ -4,9 +4,7 @@
 #include <limits>
 #include <vector>
 
-#include "filter/step/equations/drift.hpp"
 #include "filter/step/equations/imm.hpp"
-#include "filter/step/equations/noise_scale.hpp"
 #include "filter/step/equations/salvi2025.hpp"
 
 /// One step of the filters of FilterVariant, as a function of model, state, input and measurement. Only FilterState
@@ -18,7 +16,7 @@ namespace modebank {
 template <int N, int NY>
 FilterState<N> initial_state(const FilterModel<N, NY>& model) {
   return {std::vector<Gaussian<N>>(model.modes.size(), Gaussian<N>(model.structure.dimension())),
-          model.initial_probability, 1.0, 0.0, model.drift.start(model.structure.dimension())};
+          model.initial_probability};
 }
 
 /// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: first measurement; with lags
@@ -31,9 +29,6 @@ void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   for (std::size_t j = 1; j < state.modes.size(); ++j) state.modes[j] = state.modes[0];
   state.mode_probability = model.initial_probability;
   floor_probabilities(state.mode_probability);
-  state.noise_scale = 1.0;
-  state.noise_samples = model.noise_adaptation.prior_samples;
-  if (model.drift.on()) model.drift.restart(state.drift);
 }
 
 template <int N, int NY, class Y>
@@ -65,34 +60,26 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
 /// Computes everything before the measurement: each mode's prediction and S, and the predicted probabilities.
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
-  if (model.drift.on()) return drift::predict_modes(model, state, mix(model, state, u, step), u, step);
   predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
 }
 
 /// For a missing measurement: the prediction becomes the estimate.
 template <int N, int NY>
-void skip_measurement(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, FilterState<N>& state) {
+void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
   keep_prediction(step, state);
   state.mode_probability = step.predicted_probability;
   floor_probabilities(state.mode_probability);
-  if (model.drift.on()) drift::keep_prediction(model, step, state);
 }
 
 /// Updates with a measurement. `sensor` is the model, or its part for the available signals.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
-  const double noise_scale = state.noise_scale;  // noise scale of the prediction
   correct(sensor, y, step, state.modes);
-  if (model.adaptive) adapt_noise_scale(model, sensor, step.predicted_probability, step, state);
-  if (model.mode_count() == 1) {
-    if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
-    return step.log_likelihood(0);
-  }
+  if (model.mode_count() == 1) return step.log_likelihood(0);
   const double log_density = bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
   floor_probabilities(state.mode_probability);
-  if (model.drift.on()) drift::learn(model, sensor, noise_scale, step, state);
   return log_density;
 }
 
@@ -104,7 +91,7 @@ double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& st
   step.partial.missing = missing_entries(y);
   if (step.partial.missing == 0) return take_in(model, model, y, step, state);
   if (step.partial.missing == y.size()) {
-    skip_measurement(model, step, state);
+    skip_measurement(step, state);
     return std::numeric_limits<double>::quiet_NaN();
   }
   step.partial.assign(model, y);

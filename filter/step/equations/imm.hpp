@@ -9,8 +9,6 @@
 #include <vector>
 
 #include "filter/step/equations/bounds.hpp"
-#include "filter/step/equations/drift_state.hpp"
-#include "filter/step/equations/interval.hpp"
 #include "filter/step/equations/kalman.hpp"
 #include "filter/step/equations/model.hpp"
 #include "ident/base/log_two_pi.hpp"
@@ -28,14 +26,11 @@
 /// state how each is handled. filter_step.hpp combines the steps, also for variants that differ in one of them.
 namespace modebank {
 
-/// The state of a filter: one Gaussian per mode, the mode probabilities, and the present noise scale.
+/// The state of a filter: one Gaussian per mode, and the mode probabilities.
 template <int N>
 struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K, mu
-  double noise_scale = 1.0;          ///< multiplies every mode's Q in the next prediction
-  double noise_samples = 0.0;        ///< discounted number of samples that determine the scale (noise_scale.hpp)
-  DriftState drift = {};             ///< estimates of drifting coefficients (drift.hpp); empty otherwise
 };
 
 /// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j. Unlike in a TransitionMatrix, the columns
@@ -55,18 +50,14 @@ struct FilterStep {
   Eigen::VectorXd log_likelihood;          ///< K
   PartialSensor<N, NY> partial;            ///< sensor of the last measurement; `missing` is 0 if it was complete
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
-  double noise_factor = 1.0;               ///< value of the NoiseFactor in the last prediction
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
-
-  DriftWorkspace<N, NY> drift;  ///< workspace for modes that drift; empty for other modes
 
   explicit FilterStep(const FilterModel<N, NY>& model)
       : predicted_probability(model.mode_count()),
         transition(model.mode_count(), model.transition_logit),
         partial(model.structure.dimension(), model.C.rows()),
         difference(model.structure.dimension()),
-        residual(model.C.rows()),
-        drift(model) {
+        residual(model.C.rows()) {
     const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
     kalman.assign(model.modes.size(), KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
     log_likelihood.resize(K);
@@ -83,15 +74,14 @@ void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mea
     mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
 }
 
-/// The scale of every mode's Q in the step from `state` under the acting inputs `u`: noise scale times noise factor.
+/// The scale of every mode's Q in the step from `state` under the acting inputs `u`: the noise factor.
 /// The factor is evaluated at the combined estimate. This is exact if states are measured exactly.
 template <int N, int NY, class U>
 double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
                      FilterStep<N, NY>& step) {
-  if (model.noise_factor.empty()) return state.noise_scale;
+  if (model.noise_factor.empty()) return 1.0;
   combine_means(state, step.difference);
-  step.noise_factor = model.noise_factor.at(step.difference, u);
-  return state.noise_scale * step.noise_factor;
+  return model.noise_factor.at(step.difference, u);
 }
 
 /// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate. This is exact
@@ -174,27 +164,22 @@ void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, 
 
 /// Step 3, before the measurement: computes every mode's own prediction, and S_j.
 template <int N, int NY, class U>
-void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N>>& from, double noise_scale,
+void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N>>& from, double noise_factor,
                    const U& u, FilterStep<N, NY>& step) {
   for (std::size_t j = 0; j < model.modes.size(); ++j) {
-    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_scale);
+    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_factor);
     step.kalman[j].expect(model);
   }
 }
 
 /// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes the mode's log
-/// likelihood log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals. For quantised signals, see
-/// interval.hpp.
+/// likelihood log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals.
 template <int N, int NY, class Sensor, class Y>
 void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
   const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
   for (std::size_t h = 0; h < step.kalman.size(); ++h) {
-    if (sensor.quantised) {
-      correct_intervals(sensor, y, step.kalman[h], estimates[h]);
-    } else {
-      step.kalman[h].observe(sensor, y);
-      step.kalman[h].correct(sensor, estimates[h]);
-    }
+    step.kalman[h].observe(sensor, y);
+    step.kalman[h].correct(sensor, estimates[h]);
     step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
   }
 }
@@ -214,7 +199,7 @@ double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::Vec
     sum += posterior(j);
   }
   posterior *= 1.0 / sum;
-  return largest + std::log(sum);
+  return measured_density(largest + std::log(sum));
 }
 
 inline void floor_probabilities(Eigen::VectorXd& mu) {

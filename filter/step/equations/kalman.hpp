@@ -41,11 +41,6 @@ struct KalmanStep {
   small::Ldl<NY> cholesky;                              ///< factor of S; a singular S is regularised
   double log_density = 0.0;                             ///< log N(e; 0, S)
 
-  // Only for quantised measurements (interval.hpp):
-  Eigen::Matrix<double, NY, 1> signal_log_density;  ///< log density of each signal given the previous signals
-  Eigen::Matrix<double, NY, 1> second_moment;       ///< E[e^2 / s | interval] of each signal given the previous signals
-  Eigen::Matrix<double, N, 1> column;               ///< workspace
-
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
       : predicted(n),
         process_noise(n, n),
@@ -54,9 +49,6 @@ struct KalmanStep {
         decorrelated(n_y),
         innovation_covariance(n_y, n_y),
         cholesky(n_y),
-        signal_log_density(n_y),
-        second_moment(n_y),
-        column(n),
         NN_(n, n),
         gain_(n, n_y),
         PCt_(n, n_y),
@@ -64,11 +56,11 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_scale Q. If there are terms g, g is added to x, and F includes the
+  /// x = x + A x + B u + c, P = F P F' + noise_factor Q. If there are terms g, g is added to x, and F includes the
   /// derivative of g at the mean. This is an extended Kalman filter, which is exact for P = 0.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u, double noise_scale = 1.0);
+               const U& u, double noise_factor = 1.0);
   /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
   /// model, or its part for the available signals.
   template <class Sensor>
@@ -147,17 +139,18 @@ bool is_finite(const Gaussian<N>& g) {
 template <int N, int NY>
 template <class U>
 void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
-                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_scale) {
+                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_factor) {
   propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
   for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
     predicted.mean(i) = from.mean(i - model.full_rows);
-  process_noise = noise_scale * mode.Q;
+  process_noise = noise_factor * mode.Q;
   const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
   predicted.covariance = process_noise;
   predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
   if (from.uncertain > 0) {
-    small::multiply_shifting(NN_, F, from.covariance, model.full_rows, from.uncertain);
-    small::add_symmetric_product_shifting(predicted.covariance, NN_, F, model.full_rows, from.uncertain);
+    const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
+    small::multiply_shifting(NN_, F, from.covariance, full, inner);
+    small::add_symmetric_product_shifting(predicted.covariance, NN_, F, full, inner);
   }
   make_usable(predicted);
 }
@@ -181,7 +174,7 @@ const Eigen::Matrix<double, N, N>& KalmanStep<N, NY>::bend(const FilterModel<N, 
 template <int N, int NY>
 template <class Sensor>
 void KalmanStep<N, NY>::expect(const Sensor& sensor) {
-  small::multiply_transposed(PCt_, predicted.covariance, sensor.C, sensor.seen_columns);
+  small::multiply_transposed(PCt_, predicted.covariance, sensor.C, small::or_all<N>(sensor.seen_columns));
   innovation_covariance = sensor.R;
   small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
   cholesky.factorise(innovation_covariance);
@@ -201,9 +194,8 @@ template <int N, int NY>
 template <class Vector>
 double KalmanStep<N, NY>::log_normal(Vector& residual) const {
   cholesky.decorrelate(residual);
-  const double value = -0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
-                               cholesky.squared_distance(residual));
-  return value > lowest_log_density ? value : lowest_log_density;  // NaN from an overflow also gives the lowest value
+  return measured_density(-0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
+                                  cholesky.squared_distance(residual)));
 }
 
 template <int N, int NY>
@@ -224,10 +216,11 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   posterior.mean += predicted.mean;
   small::multiply(closed_loop_, gain_, sensor.C);
   closed_loop_ = -closed_loop_;
+  const Eigen::Index seen = small::or_all<N>(sensor.seen_columns);
   closed_loop_.diagonal().array() += 1.0;
-  small::multiply_seeing(NN_, closed_loop_, predicted.covariance, sensor.seen_columns);
+  small::multiply_seeing(NN_, closed_loop_, predicted.covariance, seen);
   posterior.covariance.setZero();
-  small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, sensor.seen_columns);
+  small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, seen);
   small::multiply(NY_, gain_, sensor.R);
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored

@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/equations/drift_state.hpp"
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
@@ -26,20 +25,16 @@ struct FilterModel {
 
   LinearStructure structure;
   FilterVariant variant;
-  bool adaptive;                     ///< whether the noise scale adapts to the run
-  NoiseAdaptation noise_adaptation;  ///< settings of the adaptation
-  std::vector<Mode> modes;           ///< K
+  std::vector<Mode> modes;  ///< K
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
-  Eigen::Matrix<double, NY, 1> quantum;  ///< 0: continuous
-  bool quantised;                        ///< whether any signal is quantised
+  Eigen::VectorXd quantum;  ///< n_y, for scores; empty if no signal is rounded
   TransitionMatrix transition;
   TransitionLogit transition_logit;
   Eigen::VectorXd initial_probability;                  ///< K
   Eigen::Matrix<double, N, Eigen::Dynamic> start_gain;  ///< x[0] = start_gain y[0]; with lags, y[0] stands for all
                                                         ///< samples of z
   Eigen::Matrix<double, N, N> start_covariance;         ///< P[0]
-  DriftModel drift;                                     ///< drift of the modes' coefficients
   MotionTerms terms;                                    ///< nonlinear terms; empty if there are none
   NoiseFactor noise_factor;                             ///< factor on every mode's Q; empty without a factor
 
@@ -70,16 +65,12 @@ template <int N, int NY>
 FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
     : structure(bank.structure),
       variant(options.variant),
-      adaptive(options.noise == FilterNoise::adaptive),
-      noise_adaptation(bank.noise_adaptation),
       C(bank.C),
-      R(bank.R),
-      quantum(Eigen::VectorXd::Zero(bank.C.rows())),
-      quantised(bank.is_quantised()),
+      R(bank.recording_noise()),
+      quantum(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
       transition(bank.transition),
       transition_logit(bank.transition_logit),
       initial_probability(bank.initial_probability),
-      drift(bank),
       terms(bank.terms),
       noise_factor(bank.noise_factor) {
   if (variant == FilterVariant::kf && bank.mode_count() != 1)
@@ -88,33 +79,31 @@ FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
   if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
     throw std::invalid_argument(
         "the paper's equations (salvi2025) do not support switching by state and input; use imm");
-  if (variant == FilterVariant::salvi2025 && quantised)
-    throw std::invalid_argument("the paper's equations (salvi2025) do not support quantised measurements; use imm");
   if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
     throw std::invalid_argument(
         "the paper's equations (salvi2025) need constant noise; the noise of this bank depends on state and input");
-  if (quantised) quantum = bank.quantum;
-  if (drift.on() && variant != FilterVariant::imm && variant != FilterVariant::kf)
-    throw std::invalid_argument("drifting modes need the variant imm or kf, not " + std::string(name_of(variant)));
   for (const modebank::Mode& mode : bank.modes) {
     modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
   }
   full_rows = full_rows_of(*this);
   seen_columns = C.cols();
   while (seen_columns > 1 && (C.col(seen_columns - 1).array() == 0.0).all()) --seen_columns;
-  exact = structure.state_lags > 1 && !quantised && !drift.on() && variant != FilterVariant::salvi2025 &&
-          R.isZero(0.0) && seen_columns == C.rows() && C.leftCols(seen_columns).isIdentity(0.0);
+  exact = structure.state_lags > 1 && variant != FilterVariant::salvi2025 && R.isZero(0.0) &&
+          seen_columns == C.rows() && C.leftCols(seen_columns).isIdentity(0.0);
   const StartMoments start = start_moments(bank);
   start_gain = start.gain;
   start_covariance = start.covariance;
 }
 
-/// Calls f.template operator()<N, NY>(), with fixed sizes if these are faster. One state and one signal run three times
-/// as fast (K = 9, GPB2: 1.5 us instead of 4.9 us). With two and three states the factor is only 1.7 and 1.5, and the
-/// IMM has vector kernels for these sizes. This is the only place where run-time sizes become compile-time sizes.
+/// Calls f.template operator()<N, NY>(), with fixed sizes if these are faster. This is the only place where run-time
+/// sizes become compile-time sizes.
 template <class F>
 auto with_sizes(Eigen::Index states, Eigen::Index measurements, F&& f) {
   if (states == 1 && measurements == 1) return f.template operator()<1, 1>();
+  if (states == 2 && measurements == 1) return f.template operator()<2, 1>();
+  if (states == 2 && measurements == 2) return f.template operator()<2, 2>();
+  if (states == 3 && measurements == 1) return f.template operator()<3, 1>();
+  if (states == 3 && measurements == 3) return f.template operator()<3, 3>();
   return f.template operator()<Eigen::Dynamic, Eigen::Dynamic>();
 }
 

@@ -22,21 +22,17 @@ struct PartialSensor {
   Eigen::Matrix<double, NY, N> C;
   Eigen::Matrix<double, NY, NY> R;
   Eigen::Matrix<double, NY, 1> y;
-  Eigen::Matrix<double, NY, 1> quantum;
-  bool quantised = false;
   static constexpr bool exact = false;
   Eigen::Index seen_columns;  ///< leading columns of C that contain all nonzero entries (FilterModel)
   Eigen::Index missing = 0;   ///< number of missing signals
 
-  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), quantum(n_y), seen_columns(n) {}
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), seen_columns(n) {}
 
   template <class Sensor, class Y>
   void assign(const Sensor& whole, const Y& measured) {
     C = whole.C;
     R = whole.R;
     y = measured;
-    quantum = whole.quantum;
-    quantised = whole.quantised;
     seen_columns = whole.seen_columns;
     missing = 0;
     for (Eigen::Index i = 0; i < y.size(); ++i)
@@ -44,7 +40,6 @@ struct PartialSensor {
         C.row(i).setZero();
         detach(R, i);
         y(i) = 0.0;
-        quantum(i) = 0.0;
         ++missing;
       }
   }

@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "filter/step/equations/filter_step.hpp"
+#include "filter/step/interval_mass.hpp"
 
 /// Combination of the modes' predictions: moments of the predicted mixture and the probability transform of a
 /// measurement.
@@ -15,8 +16,7 @@ namespace modebank {
 /// Upper limit of normalised squares.
 inline constexpr double largest_nis = 1e300;
 
-/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). For a
-/// quantised signal the variance of rounding, q^2 / 12, is added.
+/// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
 template <int N, int NY, class State, class Covariance>
 void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
   const Eigen::VectorXd& c = step.predicted_probability;
@@ -30,8 +30,6 @@ void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x
     small::multiply(step.residual, model.C, step.difference);
     small::add_about_mean(S, weight, step.kalman[j].innovation_covariance, step.residual);
   }
-  // covariance of the recorded value
-  if (model.quantised) S.diagonal().array() += model.quantum.array().square() / 12.0;
 }
 
 /// The innovation of a predicted mixture, and its normalised square. Memory is allocated once.
@@ -127,18 +125,33 @@ void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd&
   }
 }
 
-/// For one mode and signal, given the previous signals: innovation, its variance, and the signal's log density.
+/// One signal's innovation in one mode, given the previous signals, and its variance.
 struct ModeSignal {
-  double e = 0.0, s = 0.0, log_density = 0.0;
+  double e = 0.0, s = 0.0;
+
+  /// Standard deviation of the signal before it was rounded. R is at least the variance of rounding, q^2 / 12, so s
+  /// contains it; the interval's mass must not count it again.
+  double unrounded_deviation(double quantum) const {
+    return std::sqrt(std::max(s - quantum * quantum / 12.0, relative_pivot_floor * s));
+  }
+  /// Log of the mean density of the reading's interval, log(mass / q). As q goes to 0 it tends to the log density, so
+  /// scores of coarse and fine readings have one unit.
+  double log_density(double quantum) const {
+    if (quantum == 0.0) return -0.5 * (log_two_pi + std::log(s) + e * e / s);
+    const double deviation = unrounded_deviation(quantum);
+    return measured_density(log_normal_mass(e / deviation, quantum / deviation) - std::log(quantum));
+  }
 };
 
-/// Transform of quantised measurements. The predictive distribution function of y_i is computed at both ends of y_i's
+/// Transform of rounded measurements. The predictive distribution function of y_i is computed at both ends of y_i's
 /// interval, given the intervals of y_1 .. y_(i-1). Component i lies between the two values. `pit`: mean of the two
 /// values. `width`: their difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j.
-/// `weights`: the modes' probabilities before the measurement. Overwrites `weights` and `log_likelihood`.
-template <class Quantum, class Y, class Signal, class Pit, class Width>
-void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
-                        Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
+/// `weights`: the modes' probabilities before the measurement. Overwrites `weights` and `log_likelihood`. Returns the
+/// log density of all signals, with the masses of intervals.
+template <class Y, class Signal, class Pit, class Width>
+double interval_transform(const Eigen::VectorXd& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
+                          Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
+  double log_density = 0.0;
   width.setZero();
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
     if (is_missing(y(i))) {
@@ -149,29 +162,30 @@ void interval_transform(const Quantum& quantum, const Y& y, Signal signal, Eigen
     double low = 0.0, high = 0.0;
     for (Eigen::Index j = 0; j < weights.size(); ++j) {
       const ModeSignal of_mode = signal(i, j);
-      const double e = of_mode.e, deviation = std::sqrt(of_mode.s);
+      const double e = of_mode.e, deviation = of_mode.unrounded_deviation(quantum(i));
       low += weights(j) * normal_cdf((e - half) / deviation);
       high += weights(j) * normal_cdf((e + half) / deviation);
-      log_likelihood(j) = of_mode.log_density;
+      log_likelihood(j) = of_mode.log_density(quantum(i));
     }
     high = std::min(high, 1.0);
     low = std::min(low, high);
     pit(i) = 0.5 * (low + high);
     width(i) = high - low;
-    if (i + 1 < pit.size()) bayes(weights, log_likelihood, weights);
+    log_density += bayes(weights, log_likelihood, weights);
   }
+  return log_density;
 }
 
 /// For a FilterStep by the equations. Call after the update with y.
 template <int N, int NY, class Y, class Pit, class Width>
-void interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights,
-                        Pit&& pit, Width&& width) {
+double interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step,
+                          Eigen::VectorXd& weights, Pit&& pit, Width&& width) {
   weights = step.predicted_probability;
-  interval_transform(
+  return interval_transform(
       model.quantum, y,
       [&](Eigen::Index i, Eigen::Index j) {
         const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
-        return ModeSignal{kalman.decorrelated(i), kalman.cholesky.D(i), kalman.signal_log_density(i)};
+        return ModeSignal{kalman.decorrelated(i), kalman.cholesky.D(i)};
       },
       weights, step.log_likelihood, pit, width);
 }

@@ -122,7 +122,7 @@ bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Ind
   }
   predict(model, state, run.inputs.col(t), step);
   if (instant.sample < 0) {
-    skip_measurement(model, step, state);
+    skip_measurement(step, state);
     return false;
   }
   const auto y = trajectory.state.col(instant.sample);

@@ -25,8 +25,10 @@ class SampleFeed {
             const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// Like `push`, but without checks of the sizes (m inputs, n_y measurements).
   void push(double time_s, const double* input, const double* measurement);
-  /// Number of model steps between two times, at most longest_gap_steps + 1. Without times it is 1.
+  /// Number of model steps between two times, at most longest_gap_steps + 1. Without times it is 1. A time that goes
+  /// back belongs to a clock that was set anew: the filter restarts, as after a long gap.
   static Eigen::Index steps_between(double from_s, double to_s, double dt_s) {
+    if (to_s < from_s) return longest_gap_steps + 1;
     const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // the usual case is decided without a division
     return near ? 1 : whole_steps((to_s - from_s) / dt_s);
   }

@@ -104,8 +104,6 @@ void exchange_terms(Io& io, S& stored) {
 /// - transition_weights: weights of the transition logit on features of state and input
 /// - transition_reference: value of the features at which `transition` holds
 /// - initial_probability: probability of each mode at the start of a run
-/// - drift_scale: root mean square of each regressor, with `bank.drift`
-/// - drift_rates: rate, start and leak
 /// - noise_directions: directions, one per row, each divided by its root mean square
 /// - noise_weights: every Q is times exp(sum weights log(|directions . (z, v)| + 0.1) - offset), bounded to 0.2 to 5
 /// - noise_offset: the offset in the formula of `noise_weights`
@@ -145,8 +143,6 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
   io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
-  io.optional_field("drift_scale", stored.drift_scale, {"regressors"}, {}, rule::positive);
-  io.optional_field("drift_rates", stored.drift_rates, {"rates"}, {}, rule::not_negative);
   io.optional_field("noise_directions", stored.noise_directions, {"noise_features", "features"}, {}, rule::finite);
   io.optional_field("noise_weights", stored.noise_weights, {"noise_features"}, {}, rule::finite);
   io.attribute_unless(0.0, "noise_offset", stored.noise_offset, rule::finite);
@@ -162,8 +158,6 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
 /// - parameter_labels: output and regressor of each parameter, `wz <- velL`
 /// - equations: lines of text, if the bank has nonlinear terms
 /// - dt_s: period of a step [s]
-/// - noise_forgetting: forgetting factor of adaptive noise
-/// - noise_prior_samples: prior samples of adaptive noise
 /// - screened: components that did not become modes
 /// - spectral_radius: spectral radius of I + A
 template <class Io, class B>
@@ -177,8 +171,6 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
       io.attribute_texts("equations", equations(bank.structure, bank.modes.front().model, bank.terms,
                                                 bank.modes.front().bend, bank.state_names, bank.input_names));
   io.attribute("dt_s", bank.dt_s, rule::positive);
-  io.attribute("noise_forgetting", bank.noise_adaptation.forgetting, rule::share);
-  io.attribute("noise_prior_samples", bank.noise_adaptation.prior_samples, rule::positive);
   exchange_model_parameters(io, bank.motion_parameters, "motion_parameter");
   io.table("screened", bank.screened, column("component", &ScreenedMode::component),
            column("weight", &ScreenedMode::weight), column("spectral_radius", &ScreenedMode::spectral_radius),

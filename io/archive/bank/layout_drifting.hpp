@@ -6,7 +6,7 @@
 #include "io/archive/bank/layout_bank.hpp"
 
 /// The layout of the drifting competitor; see io/archive/layout.hpp. Letters: p parameters, r regressors, n_y outputs,
-/// H horizons.
+/// H horizons, J noise levels.
 namespace modebank::layout {
 
 /// /drifting: one motion whose coefficients drift.
@@ -23,6 +23,8 @@ namespace modebank::layout {
 /// - initial_variance: variance of the training residuals
 /// - variance_floor: least noise variance
 /// - quantum: step of the measured values; 0: continuous
+/// - noise_level: variance of the noise in each level, in units of the running variance; absent: one level of 1
+/// - level_transition: probabilities of the next level, by rows
 /// - horizon: number of samples ahead
 /// - horizon_factor: factor that multiplies the variance at each horizon
 template <class Io, class B>
@@ -50,6 +52,8 @@ void exchange_drifting(Io& io, B& bank, const Units& units) {
                  parameter_units(stored.structure, units.states(), units.inputs()));
         io.field("regressor_scale", stored.scale, {"r"});
         io.field("initial_variance", stored.variance, {"n_y"}, squared(units.states()));
+        io.optional_field("noise_level", stored.level, {"n_y", "J"});
+        io.optional_field("level_transition", stored.switching, {"J", "J"});
         io.optional_field("horizon", stored.horizon, {"H"}, {"samples"}, rule::between(2, 1e6));
         io.optional_field("horizon_factor", stored.factor, {"H"});
       });

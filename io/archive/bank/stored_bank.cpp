@@ -191,15 +191,6 @@ MotionTerms restore_terms(const StoredBank& stored) {
   return terms;
 }
 
-BankDrift restore_drift(const StoredBank& stored) {
-  if (stored.drift_scale.size() == 0 && stored.drift_rates.size() == 0) return {};
-  if (stored.drift_scale.size() != stored.structure.regressors() || stored.drift_rates.size() != 3)
-    throw DataError("the drift has " + std::to_string(stored.drift_scale.size()) + " scales and " +
-                    std::to_string(stored.drift_rates.size()) + " rates, must be " +
-                    std::to_string(stored.structure.regressors()) + " and 3");
-  return {{stored.drift_rates(0), stored.drift_rates(1), stored.drift_rates(2)}, stored.drift_scale};
-}
-
 }  // namespace
 
 StoredBank store_bank(const Bank& bank) {
@@ -232,10 +223,6 @@ StoredBank store_bank(const Bank& bank) {
     stored.noise_weights = factor.weights;
     stored.noise_offset = factor.offset;
   }
-  if (const DriftRates& rates = bank.drift.rates; !bank.drift.empty()) {
-    stored.drift_scale = bank.drift.scale;
-    stored.drift_rates = Eigen::Vector3d(rates.q, rates.p0, rates.leak);
-  }
   return stored;
 }
 
@@ -265,7 +252,6 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
   bank.transition_logit = restore_logit(stored, stored.weight.size());
   bank.quantum = stored.quantum;
   bank.initial_probability = stored.initial_probability;
-  bank.drift = restore_drift(stored);
   bank.noise_factor = {stored.noise_directions.transpose(), stored.noise_weights, stored.noise_offset};
   validate(bank);
   return bank;
@@ -278,7 +264,9 @@ StoredDrifting store_drifting(const Bank& bank) {
                         bank.drift.scale,
                         bank.noise_variance(),
                         Eigen::VectorXd(factors.size()),
-                        Eigen::VectorXd(factors.size())};
+                        Eigen::VectorXd(factors.size()),
+                        bank.running_noise.level.transpose(),
+                        bank.running_noise.switching.transpose()};
   for (std::size_t i = 0; i < factors.size(); ++i) {
     stored.horizon(static_cast<Index>(i)) = static_cast<double>(factors[i].first);
     stored.factor(static_cast<Index>(i)) = factors[i].second;
@@ -301,6 +289,8 @@ Bank restore_drifting(const StoredDrifting& stored, const Bank& rest) {
   bank.drift = rest.drift;
   bank.drift.scale = stored.scale;
   bank.running_noise = rest.running_noise;
+  bank.running_noise.level = stored.level.transpose();
+  bank.running_noise.switching = stored.switching.transpose();
   for (Index i = 0; i < stored.horizon.size(); ++i)
     bank.running_noise.horizon_factor.emplace_back(static_cast<Index>(stored.horizon(i)), stored.factor(i));
   return bank;

@@ -81,8 +81,6 @@ struct StoredBank {
   Eigen::VectorXd quantum;                    ///< n_y; may be empty
   Eigen::MatrixXd transition;                 ///< transposed
   Eigen::VectorXd initial_probability;
-  Eigen::VectorXd drift_scale;       ///< r; empty unless modes drift
-  Eigen::VectorXd drift_rates;       ///< q, p0, leak; empty unless modes drift
   Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless the noise depends on state and input
   Eigen::VectorXd noise_weights;     ///< d
   double noise_offset = 0.0;
@@ -99,13 +97,15 @@ StoredBank store_bank(const Bank& bank);
 /// Reads or writes the members of StoredBank, except names, `dt_s` and screened modes.
 Bank restore_bank(const StoredBank& stored, Bank named);
 
-/// The arrays of /drifting, a bank of one mode with adaptive noise. Other banks have other arrays.
+/// The arrays of /drifting, a bank of one mode with running noise. Other banks have other arrays.
 struct StoredDrifting {
   LinearStructure structure;
   Eigen::VectorXd parameters;       ///< p
   Eigen::VectorXd scale;            ///< r
   Eigen::VectorXd variance;         ///< n_y
   Eigen::VectorXd horizon, factor;  ///< H
+  Eigen::MatrixXd level;            ///< J x n_y, transposed
+  Eigen::MatrixXd switching;        ///< J x J, transposed
 };
 StoredDrifting store_drifting(const Bank& bank);
 /// Reads or writes the members of StoredDrifting. Throws DataError if sizes disagree.

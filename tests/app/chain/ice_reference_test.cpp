@@ -89,7 +89,7 @@ TEST_P(IceReference, CountsGlobalModelAndBaseline) {
   const Baseline baseline = learn_baseline(*archive.recording, global, archive.windows->structure);
   EXPECT_TRUE(baseline.at_bound) << "smooth gyro data show no measurement noise";
   const auto rows_of = [&](const std::string& name, const Bank& bank) {
-    const FilterOptions filter = competitor_filter(name, options.filter);
+    const FilterOptions filter = competitor_filter(name);
     return score_filter(name, bank, *archive.recording, filter, options.scoring).summary;
   };
   const std::vector<SummaryRow> summary = rows_of("baseline", baseline.bank);

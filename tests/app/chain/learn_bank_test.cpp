@@ -29,7 +29,6 @@ class LearnBank : public CliTest {
     EXPECT_EQ(bank.transition.matrix(), expected.transition.matrix());
     EXPECT_EQ(bank.initial_probability, expected.initial_probability);
     EXPECT_EQ(bank.noise_factor.weights, expected.noise_factor.weights);
-    EXPECT_EQ(bank.noise_adaptation.forgetting, expected.noise_adaptation.forgetting);
     EXPECT_EQ(learned.baseline.internal().R, made.baseline->R);
     EXPECT_EQ(learned.baseline.internal().theta(0), made.baseline->theta(0));
   }
@@ -54,14 +53,11 @@ TEST_F(LearnBank, IsThatOfRunWithEveryStageAskedOtherwise) {
   options.window.loss = Loss::cauchy;
   options.mixture.selection.components = {1, 2, 3};
   options.mixture.selection.em.covariance = CovarianceType::diagonal;
-  options.filter.noise = FilterNoise::adaptive;
   options.seed = 9;
-  expect_the_bank_of_run(
-      {"--window.model",        "linear",   "--window.length", "20",       "--window.step",        "1",
-       "--bank.noise_by_input", "none",     "--window.loss",   "cauchy",   "--mixture.components", "1..3",
-       "--mixture.covariance",  "diagonal", "--filter.noise",  "adaptive", "--job.seed",           "9",
-       "--bank.refine",         "auto"},
-      options);
+  expect_the_bank_of_run({"--window.model", "linear", "--window.length", "20", "--window.step", "1",
+                          "--bank.noise_by_input", "none", "--window.loss", "cauchy", "--mixture.components", "1..3",
+                          "--mixture.covariance", "diagonal", "--job.seed", "9", "--bank.refine", "auto"},
+                         options);
 }
 
 TEST_F(LearnBank, IsThatOfRunWithoutRefinement) {

@@ -110,8 +110,6 @@ const std::vector<KeyValues> bases{
      {"filter.simulate", "5"},
      {"filter.simulate_method", "paths"}},
     {{"mixture.components", "2"}, {"bank.refine", "em"}},
-    {{"bank.refine", "em"}, {"filter.noise", "adaptive"}},
-    {{"bank.refine", "em"}, {"bank.drift", "auto"}},
     {{"window.model", "varx"}, {"mixture.components", "2"}},
     {{"bank.noise", "fixed"}, {"bank.transition", "stay"}},
 };
@@ -200,14 +198,8 @@ const std::vector<RuledOut> ruled_out{
     {"window.input_delay", "need window.model = varx"},
     {"window.input_delay", "need model = varx"},
     {"bank.transition", "bank.transition = logit"},
-    {"bank.drift", "bank.drift = "},
     {"bank.noise", "does not work with bank.refine = em"},
     {"bank.refine", "does not work with bank.refine = em"},
-    {"window.model", "bank.drift = auto needs"},
-    {"bank.refine", "bank.drift = auto is learned by refinement"},
-    {"bank.measurement_variance", "bank.drift = auto needs"},
-    {"data.quantum", "bank.drift = auto needs"},
-    {"filter.variant", "bank.drift = auto needs"},
 };
 
 /// Keys that can have only one value with these data.

@@ -55,29 +55,15 @@ Bank lagged_bank(const InputDelays& input_delay) {
   return bank;
 }
 
-FilterOptions adaptive(FilterVariant variant = FilterVariant::imm) {
-  FilterOptions options;
-  options.variant = variant;
-  options.noise = FilterNoise::adaptive;
-  return options;
-}
-
 TEST(ExportedC, IsTheImm) {
   expect_same(with_clock(example_bank(1, 2, 3)), {});
   expect_same(with_clock(example_bank(2, 2, 4)), {});
-}
-
-TEST(ExportedC, FollowsTheNoiseOfARun) {
-  expect_same(with_clock(example_bank(1, 2, 3)), adaptive());
-  expect_same(with_clock(example_bank(3, 1, 2)), adaptive());
-  Bank exact = example_bank(2, 2, 3, 0.0);
-  exact.noise_adaptation = {0.95, 12.0};
-  expect_same(with_clock(exact), adaptive());
+  expect_same(with_clock(example_bank(2, 2, 3, 0.0)), {});
 }
 
 TEST(ExportedC, HasLags) {
   for (const InputDelays& delay : {InputDelays(0), InputDelays(1), InputDelays(2), InputDelays({4, 1})})
-    expect_same(with_clock(lagged_bank(delay)), adaptive());
+    expect_same(with_clock(lagged_bank(delay)), {});
 }
 
 TEST(ExportedC, SwitchesByStateAndInput) {
@@ -85,7 +71,7 @@ TEST(ExportedC, SwitchesByStateAndInput) {
   bank.transition_logit.weights.resize(3, 3);
   bank.transition_logit.weights << 0.0, 0.0, 0.0, 2.0, -1.0, 3.0, -300.0, 1.0, 0.5;
   bank.transition_logit.reference = Eigen::Vector3d(0.1, -0.05, 0.2);
-  expect_same(with_clock(bank), adaptive());
+  expect_same(with_clock(bank), {});
 }
 
 TEST(ExportedC, HasOneModeOrOnesThatNeverChange) {
@@ -94,7 +80,7 @@ TEST(ExportedC, HasOneModeOrOnesThatNeverChange) {
   expect_same(with_clock(example_bank(2, 2, 1)), kf);
   Bank constant = example_bank(2, 2, 3);
   constant.transition = TransitionMatrix::sticky(3, 1.0);
-  expect_same(with_clock(constant), adaptive());
+  expect_same(with_clock(constant), {});
 }
 
 TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {
@@ -103,14 +89,14 @@ TEST(ExportedC, NeedsNeitherInputsNorAllStatesNorAClock) {
   partly.C = Eigen::MatrixXd(2, 3);
   partly.C << 1.0, 0.0, 0.5, 0.0, 1.0, -0.3;
   partly.R = Eigen::Matrix2d{{2e-4, 5e-5}, {5e-5, 1e-4}};
-  expect_same(with_clock(partly), adaptive());
-  expect_same(example_bank(1, 1, 2), adaptive());
+  expect_same(with_clock(partly), {});
+  expect_same(example_bank(1, 1, 2), {});
 }
 
 TEST(ExportedC, KeepsModesThatTheMatrixForbids) {
   Bank bank = example_bank(1, 1, 3);
   bank.transition = TransitionMatrix(Eigen::Matrix3d{{0.9, 0.1, 0.0}, {0.2, 0.8, 0.0}, {0.5, 0.5, 0.0}});
-  expect_same(with_clock(bank), adaptive());
+  expect_same(with_clock(bank), {});
 }
 
 TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
@@ -128,9 +114,6 @@ TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
   Bank coarse = example_bank(1, 1, 2);
   coarse.quantum = Eigen::VectorXd::Constant(1, 0.01);
   EXPECT_THAT(refusal(coarse, {}), HasSubstr("data.quantum"));
-  Bank drifting = example_bank(1, 1, 2, 0.0);
-  drifting.drift = {{1e-4, 1e-2, 1.0}, Eigen::VectorXd::Ones(3)};
-  EXPECT_THAT(refusal(drifting, {}), HasSubstr("bank.drift"));
   Bank following = example_bank(1, 1, 2);
   following.noise_factor = {Eigen::MatrixXd::Ones(1, 2), Eigen::VectorXd::Ones(1), 0.0};
   EXPECT_THAT(refusal(following, {}), HasSubstr("--bank.noise_by_input none"));

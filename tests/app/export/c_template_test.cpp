@@ -13,7 +13,6 @@
 #include "app/export/c/templates.hpp"
 #include "app/export/forms.hpp"
 #include "filter/step/equations/bounds.hpp"
-#include "filter/step/equations/noise_scale.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "filter/step/transition_logit.hpp"
 #include "tests/app/export/exported.hpp"
@@ -43,10 +42,7 @@ ExportedBank small_bank() {
   bank.transition = TransitionMatrix(Eigen::Matrix2d{{0.875, 0.125}, {0.25, 0.75}});
   bank.transition_logit.weights = Eigen::MatrixXd{{0.0, 0.0, 0.0}, {2.0, -1.0, 4.0}};
   bank.transition_logit.reference = Eigen::Vector3d(0.125, 0.0, 0.25);
-  bank.noise_adaptation = {0.9375, 16.0};
-  FilterOptions options;
-  options.noise = FilterNoise::adaptive;
-  ExportedBank exported = as_exported(bank, options);
+  ExportedBank exported = as_exported(bank);
   exported.mode_names[0] = "wet ice";
   for (ModeErrors& errors : exported.errors) errors.A.setConstant(0.125);
   return exported;
@@ -119,8 +115,6 @@ TEST(CTemplate, HasTheBoundsOfTheEquations) {
   EXPECT_EQ(value("LARGEST_MEASUREMENT"), largest_measurement);
   EXPECT_EQ(value("LEAST_PIVOT"), relative_pivot_floor);
   EXPECT_EQ(value("LEAST_LOG_ODDS"), -largest_log_odds);
-  EXPECT_EQ(value("LARGEST_STANDARDISED"), largest_standardised);
-  EXPECT_EQ(value("LARGEST_NOISE_SCALE"), largest_noise_scale);
   EXPECT_EQ(value("LONGEST_GAP"), static_cast<double>(longest_gap_steps));
 }
 

@@ -102,7 +102,7 @@ TEST_F(Export, RefusesABankWhoseUncertaintyIsFoundFalse) {
 
 TEST_F(Export, TakesTheFilterAsItWasJudged) {
   judge(Calibration::calibrated);
-  EXPECT_THAT(exported("json", {"--filter.noise", "adaptive"}).err, HasSubstr("export does not read --filter.noise"));
+  EXPECT_THAT(exported("json", {"--filter.variant", "kf"}).err, HasSubstr("export does not read --filter.variant"));
   const ProgramResult baseline = exported("json", {"--track.filter", "baseline"});
   ASSERT_EQ(baseline.status, 0) << baseline.err;
   EXPECT_EQ(json::parse(baseline.out).at("source").at("filter"), "baseline");

@@ -20,8 +20,7 @@ class StudyCommands : public CliTest {
   }
   ProgramResult study(std::vector<std::string> options, const std::string& folder = "s") const {
     std::vector<std::string> arguments{"study",           config(),         "--data.root",
-                                       file("").string(), "--study.output", file(folder).string(),
-                                       "--filter.smooth", "false"};
+                                       file("").string(), "--study.output", file(folder).string()};
     arguments.insert(arguments.end(), options.begin(), options.end());
     return modebank(arguments);
   }

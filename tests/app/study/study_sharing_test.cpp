@@ -62,16 +62,15 @@ const std::vector<KeyValues> trials{
     {{"filter.variant", "salvi2025"}},
     {{"filter.variant", "kf"}},
     {},
-    {{"filter.smooth", "false"}, {"filter.horizon", "1..3"}},
+    {{"filter.horizon", "1..3"}},
     {{"bank.theta", "mean"}},
     {{"bank.refine", "em"}},
-    {{"bank.refine", "em"}, {"filter.noise", "adaptive"}},
     {{"bank.measurement_variance", "0.01"}},
     {{"mixture.components", "2"}},
     {{"mixture.components", "2"}, {"mixture.features", "parameters"}},
     {{"job.seed", "9"}},
     {{"window.loss", "cauchy"}},
-    {{"window.length", "20"}, {"filter.noise", "adaptive"}},
+    {{"window.length", "20"}},
     {{"data.rate_hz", "5"}},
     {{"data.train", "01"}, {"data.test", "00"}},
     {},
@@ -111,7 +110,7 @@ double bytes_in(const std::filesystem::path& folder) {
 TEST_F(StudySharing, TheStoreIsBounded) {
   TrialRunner runner(file("cache"), 0.3, 0.0);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
-    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
+    runner.run(configured({{"window.length", length}}), "");
   EXPECT_LE(bytes_in(file("cache")), 0.3e6);
   EXPECT_GT(bytes_in(file("cache")), 0.0);
 }
@@ -140,7 +139,7 @@ TEST_F(StudySharing, TheStoreRemovesAndFollowsNothingOfOthers) {
   store.provide(Stage::bank, key, {[] {}, give, take});
   TrialRunner runner(file("cache"), 0.3, 0.0);
   for (const char* length : {"10", "11", "12", "13", "14", "15"})
-    runner.run(configured({{"window.length", length}, {"filter.smooth", "false"}}), "");
+    runner.run(configured({{"window.length", length}}), "");
   EXPECT_EQ(bytes_of(file("elsewhere/cache/mine.h5")), theirs);
   EXPECT_EQ(bytes_of(file("elsewhere/cache/windows-notes.h5")), theirs);
   EXPECT_EQ(bytes_of(file("elsewhere/linked.h5")), "precious");

@@ -59,18 +59,17 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
   EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("6 training runs"), HasSubstr("no run was held out")));
 }
 
-TEST(FindingText, OneModeAndCoarseMeasurementsClaimNothing) {
+TEST(FindingText, OneModeAndRepeatedMeasurementsClaimNothing) {
   Finding one = finding_of(Answer::one_mode);
   one.modes = 1;
   EXPECT_THAT(finding_text(one), AllOf(HasSubstr("one mode"), Not(HasSubstr("evidence"))));
-  one.coarse = {{"y", 0.0, 1.0, 0.0}};
+  one.repeating = {{"y", 1.0, 0.0}};
   EXPECT_THAT(finding_text(one),
               HasSubstr("Its log scores measure rounding rather than motion: 100 % of the samples of y repeat"));
-  Finding coarse = finding_of(Answer::not_comparable);
-  coarse.coarse = {{"wz", 0.2, 0.0, 0.12}, {"v", 0.0, 0.78, 0.1}};
-  EXPECT_THAT(finding_text(coarse),
-              AllOf(HasSubstr("wz comes in steps of 0.2, and predictions are uncertain by 0.12"),
-                    HasSubstr("78 % of the samples of v repeat the one before (at most 10 % passes)"),
+  Finding repeated = finding_of(Answer::not_comparable);
+  repeated.repeating = {{"v", 0.78, 0.1}};
+  EXPECT_THAT(finding_text(repeated),
+              AllOf(HasSubstr("78 % of the samples of v repeat the one before (at most 10 % passes)"),
                     Not(HasSubstr("evidence"))));
 }
 

@@ -19,8 +19,7 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 
-const app::Settings defaults{
-    {"window.model", "linear"}, {"window.state_lags", "1"}, {"filter.noise", "gaussian"}, {"mixture.restarts", "5"}};
+const app::Settings defaults{{"window.model", "linear"}, {"window.state_lags", "1"}, {"mixture.restarts", "5"}};
 
 std::string screen_of(const Archive& archive) { return first_screen(archive, defaults, "demo.h5"); }
 

@@ -36,7 +36,7 @@ DiagnosticsRow random_row(Draw& draw) {
     const double u = draw.between(0.0, 1.0);
     scores.push_back(draw.normal(size) * (u < rough ? 2.0 : u < rough + quiet ? 0.3 : 1.0));
   }
-  return row_of({scores}, FilterNoise::gaussian, nis);
+  return row_of({scores}, true, nis);
 }
 
 TEST(Sentences, OnTheBandMeanWhatItsRowSays) {
@@ -101,7 +101,7 @@ TEST(Sentences, OnTheGainsMeanWhatTheirRowsSay) {
     for (Mode& mode : bank.modes)
       mode.standard_error.setConstant(bank.structure.parameters(), known ? 1e-3 : std::nan(""));
     const Finding finding =
-        judge_modes({bank, Role::test, all[0], {all.begin() + 1, all.end()}, {}, {}, {{"y", 0.0, 0.0, 1.0}}, {}});
+        judge_modes({bank, Role::test, all[0], {all.begin() + 1, all.end()}, {}, {}, {{"y", 0.0, 1.0}}, {}});
     const std::string text = finding_text(finding);
     ++answers[static_cast<std::size_t>(finding.answer)];
     const auto scores = [&](const std::string& name) {

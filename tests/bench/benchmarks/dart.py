@@ -47,10 +47,9 @@ def both_folds(given, runs, name, **options):
 def main():
     given = Arguments(__doc__)
     runs = sorted(file.stem for file in (given.data / "dart").glob("*.csv"))
-    steady, folds = both_folds(given, runs, "steady", bank__drift="none"), both_folds(given, runs, "drift")
+    folds = both_folds(given, runs, "dart")
     head(given.program, "DART", PROTOCOL, ["predictor", "A: 1 step", "A: 10 steps", "A: jumps", "B: 1 step", "B: 10 steps", "B: jumps"])
-    line(f"bank, {modes(folds[0])} and {modes(folds[1])} modes that may drift", *cells(folds[0], "bank"), *cells(folds[1], "bank"))
-    line(f"bank, {modes(steady[0])} and {modes(steady[1])} modes, bank.drift = none", *cells(steady[0], "bank"), *cells(steady[1], "bank"))
+    line(f"bank, {modes(folds[0])} and {modes(folds[1])} modes", *cells(folds[0], "bank"), *cells(folds[1], "bank"))
     names = list(dict.fromkeys(filters(folds[0], "combined") + filters(folds[1])))  # terms may be accepted in one fold only
     for name in names[1:]:
         line(title_of(name), *cells(folds[0], name), *cells(folds[1], name))

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <map>
@@ -21,16 +22,14 @@ using test::row_of;
 using test::simulate_truth;
 
 /// Simulates `seeds` runs, and counts the runs with each verdict. The filter's Q and R are wrong by a factor.
-std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds,
-                                    FilterNoise noise = FilterNoise::gaussian) {
+std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds) {
   Bank filter = truth;
   for (Mode& mode : filter.modes) mode.Q *= of_Q;
   filter.R *= of_R;
-  const FilterOptions options{.noise = noise};
   std::map<Calibration, int> counts;
   for (int seed = 0; seed < seeds; ++seed) {
     const Trajectory run = simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run;
-    ++counts[row_of(filter, {run}, options).verdict];
+    ++counts[row_of(filter, {run}).verdict];
   }
   return counts;
 }
@@ -55,17 +54,6 @@ TEST(Calibration, VerdictsAreRightSeedBySeed) {
   const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
   EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Calibration::overconfident], nearly_all);
   EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
-}
-
-/// An adaptive noise scale has an error of its own. So the mean NIS of a correct model lies above n_y, significantly if
-/// there are many samples.
-TEST(Calibration, AdaptiveNoiseIsJudgedByTailsAlone) {
-  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  for (const double factor : {1.0, 4.0})  // the adaptive scale removes the error of Q
-    EXPECT_EQ(verdicts(bank, factor, 1, 10000, 2, FilterNoise::adaptive)[Calibration::calibrated], 2) << factor;
-  const Bank noisy = test::single_mode(example_bank(1, 1, 1, 1.3e-3), 0);  // the adaptive scale does not remove an
-                                                                           // error of the measurement noise
-  EXPECT_EQ(verdicts(noisy, 1, 4, 1500, 10, FilterNoise::adaptive)[Calibration::underconfident], 10);
 }
 
 /// With many samples even a negligible deviation is significant.
@@ -122,19 +110,32 @@ TEST(Calibration, NeedsAMeanNisNearOneAndWhiteErrorsOfEverySignal) {
   for (const double rho : {-0.3, 0.3}) {
     const DiagnosticsRow row = row_of({series(0.0), series(rho)});
     EXPECT_EQ(row.verdict, Calibration::undecided) << rho;
-    EXPECT_EQ(reason_of(row), CalibrationReason::pattern);
+    EXPECT_EQ(row.reason, CalibrationReason::pattern);
     EXPECT_TRUE(errors_follow_a_pattern(row));
   }
   const DiagnosticsRow narrow = row_of({scaled(series(0.0), 1.2)});
   EXPECT_NEAR(narrow.nis_mean, 1.44, 0.05);
   EXPECT_EQ(narrow.verdict, Calibration::overconfident);
-  const DiagnosticsRow small = row_of({series(0.0)}, FilterNoise::gaussian, 0.5);  // chi-square, so its tenth decides
+  const DiagnosticsRow small = row_of({series(0.0)}, true, 0.5);  // chi-square, so its tenth decides
   EXPECT_EQ(small.verdict, Calibration::underconfident);
   for (const double nis : {0.7, 1.44}) {  // the band holds
-    const DiagnosticsRow row = row_of({series(0.0), series(0.0)}, FilterNoise::adaptive, nis);
+    const DiagnosticsRow row = row_of({series(0.0), series(0.0)}, false, nis);
     EXPECT_EQ(row.verdict, Calibration::undecided) << nis;
-    EXPECT_EQ(reason_of(row), CalibrationReason::nis);
+    EXPECT_EQ(row.reason, CalibrationReason::nis);
   }
+}
+
+/// 6.8 % outside the band are too many with 95 % confidence, but not with 99 %, so the mean NIS decides.
+TEST(Calibration, NamesTheNumberThatDecidedTheVerdict) {
+  std::vector<double> scores;
+  for (int i = 0; i < 1000; ++i) scores.push_back(1.074 * normal_score((i + 0.5) / 1000.0));
+  std::shuffle(scores.begin(), scores.end(), std::mt19937_64(2));
+  const DiagnosticsRow row = row_of({scores}, true);
+  EXPECT_LT(row.coverage_95, 1.0 - 0.06);
+  EXPECT_LT(row.coverage_95_upper, 0.95);
+  EXPECT_EQ(row.verdict, Calibration::overconfident);
+  EXPECT_EQ(row.reason, CalibrationReason::nis);
+  EXPECT_EQ(row_of({scaled(scores, 1.2)}, true).reason, CalibrationReason::band);
 }
 
 /// Percentages of 100 series.
@@ -142,9 +143,7 @@ std::map<Calibration, int> verdicts_of_related(int samples, double rho, bool siz
   std::mt19937_64 generator(17);
   std::map<Calibration, int> counts;
   for (int i = 0; i < 100; ++i)
-    ++counts[row_of({scaled(related_scores(samples, rho, sizes_alone, generator), scale)},
-                    with_nis ? FilterNoise::gaussian : FilterNoise::adaptive)
-                 .verdict];
+    ++counts[row_of({scaled(related_scores(samples, rho, sizes_alone, generator), scale)}, with_nis).verdict];
   return counts;
 }
 
@@ -183,7 +182,7 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   std::mt19937_64 generator(5);
   std::vector<double> scores;
   for (int k = 0; k < 3000; ++k) scores.push_back((k % 4 == 0 ? 0.3 : 1.2) * normal(generator));
-  const DiagnosticsRow row = row_of({scores});
+  const DiagnosticsRow row = row_of({scores}, true);
   EXPECT_LT(row.coverage_95, 1.0 - 0.063);
   EXPECT_GT(row.too_close, 0.03);
   EXPECT_EQ(row.verdict, Calibration::overconfident);

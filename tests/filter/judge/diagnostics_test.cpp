@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "filter/judge/run/smoother.hpp"
+#include "filter/judge/run/mode_sequence.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -22,9 +22,10 @@ std::vector<DiagnosticsRow> diagnose_runs(const Bank& filter_bank, const std::ve
   std::vector<RunEvaluation> evaluations;
   for (const Trajectory& run : runs) {
     evaluations.push_back(evaluate_run(filter_bank, run, options));
-    smooth_run(filter_bank, run, options, evaluations.back());
+    evaluations.back().viterbi_mode = mode_sequence(filter_bank, run, options);
   }
-  return diagnose("bank", Role::test, filter_bank, options, runs, evaluations, score_runs(evaluations));
+  return diagnose("bank", Role::test, filter_bank, filter_bank.mode_count() == 1, runs, evaluations,
+                  score_runs(evaluations));
 }
 
 std::vector<Trajectory> truth_runs(const Bank& bank, Index runs, Index samples) {
@@ -142,6 +143,14 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   wrong.modes[0].model.A *= 0.1;
   wrong.modes[0].Q *= 4.0;
   EXPECT_THAT(flags(wrong, truth_runs(test::single_mode(bank, 0), 1, 1500)), testing::HasSubstr("not white"));
+  // An input that overflows the last prediction.
+  std::vector<Trajectory> runs = truth_runs(test::single_mode(bank, 0), 1, 600);
+  runs[0].input.setZero();
+  runs[0].input(0, 598) = 1e300;
+  wrong.modes[0].model.B.setConstant(1e100);
+  const std::vector<RunEvaluation> failed{evaluate_run(wrong, runs[0], {})};
+  EXPECT_THAT(diagnose("bank", Role::test, wrong, {}, runs, failed, score_runs(failed)).front().flags,
+              testing::HasSubstr("the filter failed at 1 samples"));
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ struct Case {
   std::vector<SummaryRow> summary;
   std::vector<HorizonRow> horizons;
   std::vector<FreeRunRow> free_runs;
-  std::vector<Resolution> states{{"wz", 0.0, 0.0, 0.01}};
+  std::vector<Resolution> states{{"wz", 0.0, 0.01}};
   double step_scatter = 0.0;
   std::vector<DiagnosticsRow> diagnostics;
   ErrorPattern pattern;
@@ -47,8 +47,8 @@ struct Case {
   }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, false, step_scatter,
-                        diagnostics, pattern});
+    return judge_modes(
+        {bank, role, of_bank, competitors, summary, horizons, states, free_runs, step_scatter, diagnostics, pattern});
   }
 };
 
@@ -282,16 +282,13 @@ TEST(Finding, APatternThatLagsWouldTakeAwayComesBeforeModes) {
   }
 }
 
-TEST(Finding, CoarseOrRepeatedMeasurementsAreNotJudgedByDensities) {
-  for (const Resolution& coarse : {Resolution{"wz", 0.003, 0.0, 0.01}, Resolution{"wz", 0.0, 0.2, 0.01}}) {
-    Case quantised;
-    quantised.states = {coarse};
-    const Finding finding = quantised.judged();
-    EXPECT_EQ(finding.answer, Answer::not_comparable);
-    EXPECT_EQ(finding.coarse.size(), 1U);
-  }
+TEST(Finding, RepeatedMeasurementsAreNotJudgedByDensities) {
+  Case repeated;
+  repeated.states = {{"wz", 0.2, 0.01}};
+  EXPECT_EQ(repeated.judged().answer, Answer::not_comparable);
+  EXPECT_EQ(repeated.judged().repeating.size(), 1U);
   Case fine;
-  fine.states = {{"wz", 0.002, 0.05, 0.01}};
+  fine.states = {{"wz", 0.05, 0.01}};
   EXPECT_EQ(fine.judged().answer, Answer::evidence);
 }
 
@@ -306,7 +303,7 @@ SummaryRow pooled(const char* filter, double rmse) {
 
 TEST(Finding, WhatOneModelLeavesNoNoiseOfHasOneMode) {
   Case exact;
-  exact.states = {{"wz", 0.0, 0.0, 1e-12, 0.5}};
+  exact.states = {{"wz", 0.0, 0.5}};
   exact.summary = {pooled("bank", 1e-12), pooled("baseline", 1e-12)};
   const Finding finding = exact.judged();
   EXPECT_TRUE(finding.without_noise);

@@ -82,7 +82,8 @@ TEST(SquaredDistances, ATrueFilterHasMeanNisOfItsSignalsWhateverIsMissing) {
     const std::vector<RunEvaluation> evaluations{evaluate_run(bank, runs[0], {}), evaluate_run(bank, runs[1], {})};
     const std::vector<RunScores> scores = score_runs(evaluations);
     const std::vector<SummaryRow> summary = summarize("bank", runs[0].role, runs, evaluations, scores);
-    const DiagnosticsRow row = diagnose("bank", runs[0].role, bank, {}, runs, evaluations, scores).front();
+    const DiagnosticsRow row =
+        diagnose("bank", runs[0].role, bank, bank.mode_count() == 1, runs, evaluations, scores).front();
     const double signals = 2.0 * 6000.0 * 3.0 * (1.0 - missing);
     EXPECT_NEAR(row.nis_mean, 3.0, 4.0 * 3.0 * std::sqrt(2.0 / signals)) << missing;
     EXPECT_DOUBLE_EQ(row.nis_mean, summary.back().nis_mean) << missing;  // both tables must define the mean NIS in the

@@ -118,6 +118,38 @@ TEST(DriftingLearning, NoOtherFactorMakesAHorizonMoreLikely) {
     }
 }
 
+/// x[k+1] = x[k] / 2 + u[k] + e, where the standard deviation of e switches between 0.05 and 1. The variance of the
+/// last samples follows such noise too late.
+TEST(DriftingLearning, TakesTheNoiseLevelsOfOneMotionWhereTheyGain) {
+  const LinearStructure structure{1, 1, false, 1, 1, 1};
+  Bank one_motion = one_mode_bank(structure, Eigen::Vector2d(-0.5, 1.0), Eigen::VectorXd::Constant(1, 0.0025));
+  one_motion.modes.push_back(one_motion.modes.front());
+  one_motion.modes[1].Q(0, 0) = 1.0;
+  one_motion.transition = TransitionMatrix::sticky(2, 0.8);
+  Recording recording = test::empty_recording(1, 1);
+  std::mt19937_64 generator(5);
+  boost::random::normal_distribution<double> normal;
+  boost::random::uniform_01<double> uniform;
+  for (Index run = 0; run < 3; ++run) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 400), u(1, 400);
+    bool loud = false;
+    for (Index k = 0; k < 400; ++k) {
+      u(0, k) = normal(generator);
+      if (uniform(generator) < 0.2) loud = !loud;
+      if (k > 0) x(0, k) = 0.5 * x(0, k - 1) + u(0, k - 1) + (loud ? 1.0 : 0.05) * normal(generator);
+    }
+    test::add_run(recording, x, u, run < 2 ? Role::train : Role::test);
+  }
+  const Bank plain = learn_all(recording, structure), model = with_noise_levels(plain, one_motion, recording, {1, 2});
+  ASSERT_EQ(model.running_noise.levels(), 2);
+  EXPECT_NEAR(model.running_noise.level(0, 1) / model.running_noise.level(0, 0), 400.0, 1e-9);
+  EXPECT_NEAR(model.drift.tuning.log_score, mean_training_score(model, recording), 1e-12);
+  EXPECT_GT(log_likelihood(model, recording.runs[2], {}) - log_likelihood(plain, recording.runs[2], {}), 0.1 * 399.0);
+  one_motion.modes.pop_back();
+  one_motion.transition = TransitionMatrix();
+  EXPECT_EQ(with_noise_levels(plain, one_motion, recording, {1, 2}).running_noise.levels(), 1);
+}
+
 TEST(DriftingLearning, HeldOutRunsDoNotMatter) {
   const Bank truth = example_drifting(1, 1, 1);
   Recording recording = drifting_recording(truth, 2, 200);

@@ -10,7 +10,6 @@
 namespace modebank {
 namespace {
 
-using test::adaptive_imm;
 using test::near;
 using test::quick;
 using test::simulate;
@@ -57,7 +56,7 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   options.max_iterations = 12;
   options.restarts = 1;
   const auto refine = [&](const Recording& data) {
-    return refine_bank(data, test::windows_of(data, 25, 1), {start_bank(data, truth.theta)}, options, adaptive_imm());
+    return refine_bank(data, test::windows_of(data, 25, 1), {start_bank(data, truth.theta)}, options, {});
   };
   const Refinement alone = refine(recording);
   const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
@@ -65,7 +64,6 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   ASSERT_EQ(alone.bank.mode_count(), other.bank.mode_count());
   for (Index j = 0; j < alone.bank.mode_count(); ++j) EXPECT_TRUE(near(alone.bank.theta(j), other.bank.theta(j), 0.0));
   EXPECT_TRUE(near(alone.bank.transition.matrix(), other.bank.transition.matrix(), 0.0));
-  EXPECT_EQ(alone.bank.noise_adaptation.forgetting, other.bank.noise_adaptation.forgetting);
   Index selected = 0;
   double best = -1e300;
   for (const RefineCandidate& c : alone.candidates) best = std::max(best, c.score);
@@ -117,20 +115,6 @@ TEST_F(Refine, MotionModelsAreRefused) {
   Bank bank = start_bank(recording, truth.theta);
   bank.motion_parameters.push_back({"slip", ""});
   EXPECT_THROW(refine_bank(recording, test::windows_of(recording, 25, 1), {bank}, quick(), {}), std::invalid_argument);
-}
-
-TEST_F(Refine, AdaptiveNoiseIsWorthItWhereARunIsQuieter) {
-  Recording quiet = test::empty_recording(1, 1);
-  simulate(truth, 1, 400, 0.4, Role::test, generator, quiet);
-  const Bank bank = [&] {
-    Bank known = start_bank(quiet, truth.theta);
-    for (Index j = 0; j < 3; ++j) known.modes[static_cast<std::size_t>(j)].Q(0, 0) = truth.Q(j);
-    known.transition = TransitionMatrix(truth.T);
-    return known;
-  }();
-  ;
-  const double gain = log_likelihood(bank, quiet.runs[0], adaptive_imm()) - log_likelihood(bank, quiet.runs[0], {});
-  EXPECT_GT(gain / 399.0, 0.2);
 }
 
 }  // namespace

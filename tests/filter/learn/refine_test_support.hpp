@@ -51,12 +51,6 @@ inline Bank start_bank(const Recording& recording, const Eigen::MatrixXd& theta)
   return bank;
 }
 
-inline FilterOptions adaptive_imm() {
-  FilterOptions options;
-  options.noise = FilterNoise::adaptive;
-  return options;
-}
-
 inline RefineOptions quick() {
   RefineOptions options;
   options.restarts = 0;

@@ -79,14 +79,11 @@ TEST(StandardErrorsOfLongData, RestOnAllRuns) {
 }
 
 /// Expectation-maximisation gives all runs equal weight, whether their noise is large or small. So its errors are those
-/// of a filter with equal weights, whatever the bank's filter. In the adaptive filter the stated errors would be half
-/// of that (1.9 and 2.3 here).
+/// of a filter with equal weights.
 TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
   constexpr std::uint64_t draws = 30;
   const Bank truth = test::true_bank({1, 1, false}, Eigen::Vector2d(-0.3, 0.5), {Eigen::MatrixXd{{0.01}}},
                                      Eigen::VectorXd::Zero(1), 1.0);
-  FilterOptions adaptive;
-  adaptive.noise = FilterNoise::adaptive;
   RefineOptions options;
   options.folds = 3;
   options.measurement_noise = false;
@@ -98,7 +95,7 @@ TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
       rough.modes[0].Q *= run % 2 ? 0.16 : 4.0;
       recording.runs.push_back(test::simulated_recording(rough, 1, 200, 1000 + 10 * draw + run).runs.front());
     }
-    const Bank bank = refine_bank(recording, test::windows_of(recording, 25, 1), {truth}, options, adaptive).bank;
+    const Bank bank = refine_bank(recording, test::windows_of(recording, 25, 1), {truth}, options, {}).bank;
     squares += ((bank.theta(0) - truth.theta(0)).array() / bank.modes[0].standard_error.array()).square();
   }
   const Eigen::Array2d rms = (squares / static_cast<double>(draws)).sqrt();

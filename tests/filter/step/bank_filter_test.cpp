@@ -24,11 +24,7 @@ TEST(BankFilter, RefusesBanksWhoseNumbersAreNone) {
       [](Bank& b) { b.C(0, 0) = std::nan(""); },
       [](Bank& b) { b.initial_probability(0) = std::nan(""); },
       [](Bank& b) { b.initial_probability.setZero(); },
-      [](Bank& b) { b.noise_adaptation.forgetting = std::nan(""); },
-      [](Bank& b) { b.noise_adaptation.forgetting = 1.01; },
-      [](Bank& b) { b.noise_adaptation.forgetting = 0.0; },
-      [](Bank& b) { b.noise_adaptation.prior_samples = 0.0; },
-      [](Bank& b) { b.noise_adaptation.prior_samples = INFINITY; },
+      [](Bank& b) { b.initial_probability *= 0.4; },
   };
   for (std::size_t i = 0; i < spoil.size(); ++i) {
     Bank bank = test::example_bank(2, 1, 3);

@@ -19,7 +19,7 @@ using test::holed;
 using test::simulate_drifting;
 
 TEST(DriftingFilter, GoesOnFromASnapshotAndStartsAnew) {
-  Bank model = example_drifting(2, 1, 2);
+  Bank model = test::with_levels(example_drifting(2, 1, 2));
   model.dt_s = 1.0;
   const Trajectory run = holed(simulate_drifting(model, 140, 8));
   const RunEvaluation whole = evaluate_run(model, run, {});
@@ -97,6 +97,7 @@ TEST(DriftingFilter, StaysFiniteOnWildSamples) {
 TEST(DriftingFilter, StaysFiniteWhereSamplesAreOfEverySize) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     Bank model = example_drifting(2, 1, 2);
+    if (seed > 10) model = test::with_levels(model);
     model.drift.rates = {seed % 2 == 0 ? 0.0 : 0.1, 1e4, 1.0};
     Trajectory run = simulate_drifting(example_drifting(2, 1, 2), 200, seed);
     std::mt19937_64 generator(seed);

@@ -11,9 +11,9 @@
 #include "filter/judge/run/horizon.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
+#include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/free_run_test_support.hpp"
-#include "tests/filter/step/drift_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -70,7 +70,6 @@ std::vector<NamedBank> banks() {
           {"many states", test::example_bank(5, 2, 2)},
           {"one mode", test::single_mode(test::example_bank(3, 2, 2), 1), {FilterVariant::kf}},
           {"the paper's", test::example_bank(2, 1, 3), {FilterVariant::salvi2025}},
-          {"adaptive noise", test::example_bank(2, 1, 3), {FilterVariant::imm, FilterNoise::adaptive}},
           {"gaps", quick},
           {"logit", with_logit_of_state_and_input()},
           {"noise by input", with_noise_by_input()},
@@ -79,8 +78,8 @@ std::vector<NamedBank> banks() {
           {"lags with delay 3", of_lags(3)},
           {"lags with delays", of_lags(InputDelays({4, 1, 2}))},
           {"quantised", quantised},
-          {"drift", test::drifting(test::exact_bank(2, 2), {1e-3, 1e-2, 0.99})},
           {"drift with running noise", with_running_noise(Wandering::all)},
+          {"drift with noise levels", test::with_levels(with_running_noise(Wandering::all))},
           {"drift of one factor with running noise", with_running_noise(Wandering::gain)}};
 }
 
@@ -135,8 +134,7 @@ TEST(Forecast, OfTheNextSampleIsThePredictionOfTheNextStep) {
       ASSERT_EQ(ahead.size(), 1U);
       EXPECT_TRUE(test::near(view(ahead[0].state), view(said.prediction), two_texts)) << k;
       EXPECT_TRUE(test::near(view(ahead[0].mode_probability), view(said.mode_probability_predicted), two_texts)) << k;
-      MatrixXd S = bank.C * view(ahead[0].covariance) * bank.C.transpose() + bank.R;
-      if (bank.is_quantised()) S.array() += bank.quantum(0) * bank.quantum(0) / 12.0;
+      const MatrixXd S = bank.C * view(ahead[0].covariance) * bank.C.transpose() + bank.recording_noise();
       EXPECT_TRUE(test::near(S, view(said.innovation_covariance), two_texts)) << k;
     }
   }

@@ -258,7 +258,6 @@ def check_bank(group, modes, uncertain):
         expect_array(group["Q_standard_error"], (modes, n, n), "<f8", outer(STATE_UNITS))
         expect_array(group["R_standard_error"], (n_y, n_y), "<f8", outer(STATE_UNITS))
         expect_array(group["transition_standard_error"], (modes, modes), "<f8")
-        expect(f"{name} noise_forgetting", group.attrs["noise_forgetting"], 0.995)
         expect(f"{name} measured_fit", group.attrs["measured_fit"], b"iteration_limit")
         expect(f"{name} learned_transitions", group.attrs["learned_transitions"], 40)
         check_bank(group["unrefined"], 1, False)
@@ -279,13 +278,11 @@ def check_evaluation(file):
         expect_array(group["log_density"], (S,), "<f8", b"nat")
         expect_array(group["mode_probability_predicted"], (S, modes), "<f8")
         expect_array(group["mode_probability"], (S, modes), "<f8")
-        expect(f"{name} smoothed", "smoothed_state" in group, modes > 1)
+        expect(f"{name} viterbi_mode", "viterbi_mode" in group, modes > 1)
         for which in ("mean", "sd", "lower", "upper"):
             expect_array(group[f"free_run_{which}"], (S, n), "<f8", STATE_UNITS)
         expect_array(group["free_run_mode"], (S,), "<i4")
         if modes > 1:
-            expect_array(group["smoothed_state"], (S, n), "<f8", STATE_UNITS)
-            expect_array(group["smoothed_covariance"], (S, n, n), "<f8", outer(STATE_UNITS))
             expect_array(group["viterbi_mode"], (S,), "<i4")
         for run, rows in rows_of_runs(file).items():
             N = RUNS[run]
@@ -318,6 +315,7 @@ def check_evaluation(file):
     expect("free run fit", free["fit"], np.array([[66.0 + 1.0 / 3.0, 67.0 + 1.0 / 3.0]] * 4))
     diagnostics = file["evaluation/diagnostics"]
     expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 4))
+    expect("diagnostics reason", diagnostics["reason"], np.array([b"band"] * 4))
     expect("diagnostics flags", diagnostics["flags"], np.array([b"probabilities flat; heavy tails"] * 4))
     expect("diagnostics too_far_upper", diagnostics["too_far_upper"], np.array([0.06] * 4))
     expect("summary units", dict(zip(table.dtype.names, table.attrs["units"]))["rmse"], b"rad/s, m/s")

@@ -103,9 +103,9 @@ void list(Listing& to, const ScreenedMode& s) { to(s.component, s.weight, s.spec
 void list(Listing& to, const Bank& b) {
   to(b.structure, b.modes, b.terms.terms, b.terms.direction, b.terms.low, b.terms.high, b.terms.unit, b.C, b.R);
   to(b.transition.matrix(), b.transition_logit.weights, b.transition_logit.reference, b.transition_weight_error);
-  to(b.initial_probability, b.R_standard_error, b.transition_standard_error, b.noise_adaptation.forgetting,
-     b.noise_adaptation.prior_samples, b.noise_factor.directions, b.noise_factor.weights, b.noise_factor.offset);
-  to(b.drift.scale, b.drift.rates.q, b.drift.rates.p0, b.drift.rates.leak, b.state_names, b.input_names, b.dt_s);
+  to(b.initial_probability, b.R_standard_error, b.transition_standard_error, b.noise_factor.directions,
+     b.noise_factor.weights, b.noise_factor.offset);
+  to(b.state_names, b.input_names, b.dt_s);
   to(b.screened);
 }
 /// The drifting competitor has one mode and neither errors nor weights.
@@ -113,7 +113,7 @@ void list_drifting(Listing& to, const Bank& b) {
   to(b.structure, b.state_names, b.input_names, b.dt_s, b.theta(0), b.noise_variance(), b.drift.scale);
   to(b.drift.rates.q, b.drift.rates.p0, b.drift.rates.leak, b.drift.wandering, b.drift.tuning.log_score,
      b.drift.tuning.samples, b.running_noise.lam, b.running_noise.nu, b.running_noise.floor,
-     b.running_noise.horizon_factor);
+     b.running_noise.horizon_factor, b.running_noise.level, b.running_noise.switching);
 }
 void list(Listing& to, const PairedGain& g) {
   to(g.competitor, g.samples, g.gain, g.standard_error, g.degrees_of_freedom, g.margin, g.by_blocks, g.rank_p);
@@ -126,7 +126,7 @@ void list(Listing& to, const Finding& f) {
 }
 void list(Listing& to, const RunEvaluation& e) {
   to(e.prediction, e.innovation, e.innovation_covariance, e.state, e.covariance, e.nis, e.pit, e.log_density);
-  to(e.mode_probability_predicted, e.mode_probability, e.smoothed_state, e.smoothed_covariance, e.viterbi_mode);
+  to(e.mode_probability_predicted, e.mode_probability, e.viterbi_mode);
 }
 void list(Listing& to, const FreeRun& r) { to(r.mean, r.deviation, r.lower, r.upper, r.mode); }
 void list(Listing& to, const FilterEvaluation& e) { to(e.filter, e.runs, e.free_runs); }
@@ -146,7 +146,7 @@ void list(Listing& to, const DiagnosticsRow& r) {
   to(r.coverage_50, r.coverage_50_lower, r.coverage_50_upper, r.coverage_90, r.coverage_90_lower, r.coverage_90_upper);
   to(r.coverage_95, r.coverage_95_lower, r.coverage_95_upper, r.coverage_99, r.coverage_99_lower, r.coverage_99_upper);
   to(r.too_far, r.too_far_lower, r.too_far_upper, r.too_close, r.too_close_lower, r.too_close_upper, r.whiteness_p);
-  to(r.autocorrelation, r.autocorrelation_lag, r.state_rmse, r.verdict, r.flags);
+  to(r.autocorrelation, r.autocorrelation_lag, r.state_rmse, r.verdict, r.reason, r.flags);
 }
 void list(Listing& to, const ConfusionRow& r) { to(r.filter, r.role, r.label, r.mode, r.samples, r.share); }
 void list(Listing& to, const CombinationRow& r) { to(r.role, r.horizon, r.filter, r.weight, r.start); }

@@ -149,7 +149,6 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
   if (uncertain) {
     bank.R_standard_error = pattern(n, n, 80.0);
     bank.transition_standard_error = pattern(count, count, 90.0);
-    bank.noise_adaptation = {0.995, 20.0};
     const Index features = structure.dimension() + structure.acting_inputs();
     bank.transition_logit = {pattern(count, features, 95.0), pattern(features, 1, 96.0)};
     bank.transition_weight_error = pattern(count, features, 97.0);
@@ -193,6 +192,8 @@ Bank make_drifting(const LinearStructure& structure) {
   bank.dt_s = 0.125;
   bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), Wandering::all, {2.75, 321}};
   bank.running_noise = {0.75, 5.0, pattern(structure.states, 1, 98.0), {{5, 1.25}, {10, 2.5}}};
+  bank.running_noise.level = pattern(structure.states, 2, 99.0);
+  bank.running_noise.switching = TransitionMatrix::sticky(2, 0.75).matrix();
   return bank;
 }
 

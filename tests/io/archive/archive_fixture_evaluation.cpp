@@ -19,9 +19,7 @@ RunEvaluation make_evaluation(Index n, Index samples, Index count) {
   evaluation.log_density = pattern(samples, 1, 77.0);
   evaluation.mode_probability_predicted = probability_pattern(count, samples, 78.0);
   evaluation.mode_probability = probability_pattern(count, samples, 79.0);
-  if (count == 1) return evaluation;  // without filter.smooth
-  evaluation.smoothed_state = pattern(n, samples, 82.0);
-  evaluation.smoothed_covariance = spread_pattern(n, samples, 83.0);
+  if (count == 1) return evaluation;
   evaluation.viterbi_mode.resize(samples);
   for (Index s = 0; s < samples; ++s) evaluation.viterbi_mode(s) = static_cast<int>(s % (count + 1)) - 1;
   return evaluation;
@@ -106,6 +104,7 @@ DiagnosticsRow make_diagnostics(const std::string& filter, Index mode, Index n) 
           0.63,
           5,
           Calibration::overconfident,
+          CalibrationReason::band,
           "probabilities flat; heavy tails"};
 }
 

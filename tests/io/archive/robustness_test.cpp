@@ -72,8 +72,6 @@ TEST_F(Robustness, D2EveryIndexIsOfSomethingThatIsThere) {
 
 TEST_F(Robustness, D2NumbersOfAModelThatCannotBe) {
   for (const double dt_s : {-0.1, 0.0, nan, infinity}) finds_attribute("/bank", "dt_s", dt_s);
-  for (const double forgetting : {nan, -0.5, 1.5}) finds_attribute("/bank", "noise_forgetting", forgetting);
-  for (const double samples : {nan, 0.0, infinity}) finds_attribute("/bank", "noise_prior_samples", samples);
   refuses_attribute("/bank", "inputs", std::ldexp(1.0, 62));
   refuses_attribute("/bank", "input_lags", 1e9);
   finds_attribute("/drifting", "dt_s", 0.0);

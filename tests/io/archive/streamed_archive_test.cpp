@@ -82,8 +82,8 @@ Archive long_archive() {
 
 TEST_F(StreamedArchive, BlocksOfRowsMeetWhateverTheOrderOfRuns) {
   Archive archive = long_archive();
-  RunEvaluation& said = archive.evaluations.front().runs[1];  // only this run is smoothed
-  said.smoothed_state = said.smoothed_covariance = Eigen::MatrixXd::Constant(1, 70'000, 0.25);
+  RunEvaluation& said = archive.evaluations.front().runs[1];
+  said.viterbi_mode = Eigen::VectorXi::Zero(70'000);  // of this run alone
   write_streamed(archive);
   EXPECT_EQ(verify_archive(path).problems, std::vector<std::string>());
   test::expect_same(read_archive(path), archive);

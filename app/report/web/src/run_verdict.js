@@ -12,7 +12,7 @@ const capital = (text) => text.charAt(0).toUpperCase() + text.slice(1);
 const breakable = (text) => text.replace(/ (±|%|s\b|m\b)/g, '\u00a0$1').replace(/(±|period) /g, '$1\u00a0');
 
 // Finds commands (`modebank show`) and options (--filter.horizon 10) in a sentence.
-const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx|adaptive))?)/;
+const command = /(`[^`]+`|--[\w.]+(?:[ =](?:'[^']*'|[\d.]+|auto|varx))?)/;
 // Browsers break lines after hyphens. Without this, `--filter.horizon` could be split.
 const words = (text) => text.split(' ').flatMap((word, i) => [i ? ' ' : null, h('span', {class: 'word'}, word)]);
 const withCode = (text) =>

@@ -42,14 +42,15 @@ struct NoiseByState {
   double offset = 0.0;          ///< offset, subtracted in the exponent
 };
 
-/// Drift of every mode's theta within a run, per regressor of [z; v; (1)]. If empty, theta is constant.
+/// Drift of theta within a run, per regressor of [z; v; (1)], of a single mode with RunningNoise (the competitor
+/// `drifting`). If empty, theta is constant.
 struct CoefficientDrift {
   std::vector<double> scale;  ///< size of each regressor; the drift of its coefficient is in units of 1 / size
   double rate = 0.0;          ///< variance that each step adds to a coefficient, in units of Q, >= 0
   double start = 0.0;         ///< variance of a coefficient at the start of a run, in units of Q, >= 0
   double leak = 1.0;  ///< factor by which each step multiplies a coefficient's difference from the mode's coefficient,
                       ///< in (0, 1]
-  Wandering wandering = Wandering::all;  ///< which coefficients drift; a value other than `all` requires RunningNoise
+  Wandering wandering = Wandering::all;  ///< which coefficients drift
 };
 
 /// Running noise variance of a single mode that drifts (the competitor `drifting`). The variance v of each measured
@@ -62,12 +63,9 @@ struct RunningNoise {
   std::vector<double> horizon = {};  ///< horizons in samples, ascending, at least 2
   std::vector<double> factor = {};   ///< per horizon: factor on the variance of forecasts from this horizon up to the
                                      ///< next one
-};
-
-/// Speed at which the noise scale of FilterNoise::adaptive follows a run.
-struct NoiseMemory {
-  double forgetting = 0.98;    ///< forgetting factor per sample, in (0, 1]
-  double prior_samples = 5.0;  ///< number of samples that the scale 1 counts for at the start of a run, > 0
+  Matrix level;  ///< n_y x J, variances of J noise levels in units of v, which switch by a Markov chain; empty: one
+                 ///< level of 1
+  Matrix transition;  ///< J x J, row i: probabilities of the next level after level i
 };
 
 /// All numbers of a bank, for writing or reading it: K modes, their transitions, and the measurement y = C x + v with v
@@ -92,7 +90,6 @@ struct BankDescription {
   bool intercept = false;                               ///< whether c is part of theta
   std::vector<double> centre;                           ///< measured states, then inputs: the point about which theta
                                                         ///< is taken; empty: zero. A, B and c are not changed
-  NoiseMemory noise_memory;                             ///< used by filters with adaptive noise
   NoiseByState noise_by_state;                          ///< empty: constant
   CoefficientDrift drift;                               ///< empty: none
   RunningNoise running_noise;                           ///< if empty, the noise is Q

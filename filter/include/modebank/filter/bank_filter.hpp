@@ -19,7 +19,7 @@ struct Estimate {
   std::vector<double> state;       ///< n, state after the measurement
   Matrix covariance;               ///< n x n, covariance of the state after the measurement
   std::vector<double> pit;  ///< n_y, probability integral transform (Rosenblatt 1952), uniform if the model is correct.
-                            ///< For a quantised signal it is drawn uniformly within its interval; the draw depends on
+                            ///< For a rounded signal it is drawn uniformly within its interval; the draw depends on
                             ///< the number of samples since construction
   std::vector<double> mode_probability_predicted;  ///< K, mode probabilities before the measurement
   std::vector<double> mode_probability;            ///< K, mode probabilities after the measurement
@@ -51,7 +51,7 @@ class BankFilter {
   /// Processes the next sample in time order. `time_s`: seconds; NaN means one step after the last sample. `input`: the
   /// inputs() numbers recorded at that time. A non-finite input is replaced by its last known value, which is zero at
   /// first. `measurement`: the measurements() numbers, NaN where missing. The first complete measurement starts the
-  /// filter. Does not allocate.
+  /// filter, also after a long gap or a time before the last one; the estimate's `steps` is then 0. Does not allocate.
   const Estimate& step(double time_s, const double* input, const double* measurement);
   /// `step` for any type with data() and size(): std::vector, std::array, Eigen vectors. Throws std::invalid_argument
   /// for other sizes.

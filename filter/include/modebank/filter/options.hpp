@@ -12,20 +12,11 @@ struct EnumNames<FilterVariant> {
   static constexpr Names<3> values{"imm", "salvi2025", "kf"};
 };
 
-/// gaussian: Q as learned. adaptive: Q times a scale that follows the size of the innovations of the run.
-enum class FilterNoise { gaussian, adaptive };
-
-template <>
-struct EnumNames<FilterNoise> {
-  static constexpr Names<2> values{"gaussian", "adaptive"};
-};
-
 /// How a bank is run. Defaults are the recommended method. A bank is a discrete model with step bank.dt_s. A longer
 /// time between two samples becomes several prediction steps with the input held. Their number is rounded and at least
 /// one.
 struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;  ///< how the modes' estimates are mixed
-  FilterNoise noise = FilterNoise::gaussian;   ///< whether the noise scale follows the run
 
   /// Two objects are equal if all members are equal.
   bool operator==(const FilterOptions&) const = default;

@@ -34,14 +34,4 @@ Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const 
 /// Sum of the log predictive densities over the scored samples of a run [nats]. Stores nothing.
 double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
 
-/// Smoothed states of a run: estimates from all its samples; n as in Evaluation.
-struct Smoothed {
-  Matrix state;                          ///< n x N
-  Matrix covariance;                     ///< n*n x N
-  std::vector<int> most_probable_modes;  ///< N, most probable sequence of modes (Viterbi); -1 before the start
-};
-
-/// Filters like evaluate_run, then smooths backwards (Kim 1994) and finds the most probable sequence of modes.
-Smoothed smooth_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options = {});
-
 }  // namespace modebank::judge

@@ -49,16 +49,6 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Whether each mode's theta drifts within a run. none: constant. automatic: theta drifts at the rate with the highest
-/// gain on training runs that were left out, or is constant if no rate gains. Drift needs a refined bank with exactly
-/// measured states.
-enum class Drift { none, automatic };
-
-template <>
-struct EnumNames<Drift> {
-  static constexpr Names<2> values{"none", "auto"};
-};
-
 /// Score of look-ahead learning: the log density of a prediction, or its squared error.
 enum class LookAheadScore { density, error };
 
@@ -92,7 +82,6 @@ struct RefineOptions {
   bool noise_by_input = false;         ///< whether all Q share one factor that follows state and input; R then stays
                                        ///< negligible
   std::uint64_t seed = 1;              ///< seed of the random starts
-  Drift drift = Drift::none;           ///< whether each mode's theta drifts within a run
   std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from; they lie in stretches drawn
                                        ///< with the seed; 0 takes all transitions
 

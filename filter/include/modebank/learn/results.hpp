@@ -65,21 +65,4 @@ struct SwitchingStage {
                                                                           ///< run
 };
 
-/// Whether modes drift, by cross-validation inside the training runs.
-struct DriftStage {
-  bool taken = false;        ///< whether the bank's modes drift
-  std::ptrdiff_t modes = 0;  ///< number of modes of the best bank with drift
-  double rate = 0.0;   ///< rate of the drift: variance that a step adds to every coefficient, in units of the mode's
-                       ///< noise. Each regressor is divided by its root mean square
-  double start = 0.0;  ///< start of the drift: variance of every coefficient at the start of a run
-  double leak = 1.0;   ///< leak of the drift: factor by which each step multiplies a coefficient's difference from the
-                       ///< mode's coefficient
-  double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs without
-                                                                   ///< drift
-  double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the drift [nats/sample]; NaN if it was not
-                                                           ///< tested
-  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< standard error of the gain, clustered by
-                                                                          ///< run
-};
-
 }  // namespace modebank

@@ -4,18 +4,11 @@
  * A[i][j] is in units of x[i] per x[j], B[i][j] of x[i] per u[j], c[i] of x[i], Q[i][j] of x[i] x[j]. */
 enum {
   FIRST_TRANSITION = 1, /* of a run, by samples before it */
-  ADAPTIVE_NOISE = 1,
   TRANSITION_BY_STATE = 1
 };
 
 /* Length of a step [s]; 0: samples have no clock */
 static const double bank_dt_s = 0.125;
-
-/* of the noise scale, per sample, with ADAPTIVE_NOISE */
-static const double bank_noise_forgetting = 0.9375;
-
-/* samples at scale one that a start is worth */
-static const double bank_noise_prior_samples = 16.0;
 
 /* Samples from each input to its first effect */
 static const int bank_input_delay[] = {1};

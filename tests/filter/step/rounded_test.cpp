@@ -1,6 +1,4 @@
-// Filters of quantised measurements (filter/step/equations/interval.hpp).
-#include "filter/step/equations/interval.hpp"
-
+// Filters of rounded measurements: R of at least q^2 / 12, and scores by masses (equations/predicted_mixture.hpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -36,45 +34,66 @@ Bank with_quantum(Bank bank, double quantum) {
   return bank;
 }
 
-Bank golden_bank(const json& source, double R, double quantum) {
+Bank golden_bank(const json& source) {
+  const json& of = source.at("bank");
+  const VectorXd R = test::golden_rows(source.at("R"));
+  const Index n = R.size();
   Bank bank;
-  bank.structure = {1, 1, true};
-  const auto one = [](double value) { return Eigen::MatrixXd(Eigen::MatrixXd::Constant(1, 1, value)); };
-  for (std::size_t j = 0; j < source.at("A").size(); ++j) {
+  bank.structure = {n, 1, true};
+  for (std::size_t j = 0; j < of.at("A").size(); ++j) {
     bank.modes.push_back({});
-    bank.modes[j].model = {one(source.at("A")[j]), one(source.at("B")[j]), one(source.at("c")[j])};
-    bank.modes[j].Q = one(source.at("Q")[j]);
+    bank.modes[j].model = {test::golden_rows(of.at("A")[j]), test::golden_rows(of.at("B")[j]),
+                           test::golden_rows(of.at("c")[j])};
+    bank.modes[j].Q = test::golden_rows(of.at("Q")[j]);
   }
-  bank.C = one(1.0);
-  bank.R = one(R);
-  bank.transition = TransitionMatrix(test::golden_rows(source.at("T")));
-  bank.initial_probability = test::golden_rows(source.at("pi"));
-  return with_quantum(bank, quantum);
+  bank.C = Eigen::MatrixXd::Identity(n, n);
+  bank.R = R.asDiagonal();
+  bank.transition = TransitionMatrix(test::golden_rows(of.at("T")));
+  bank.initial_probability = test::golden_rows(of.at("pi"));
+  bank.quantum = test::golden_rows(source.at("quantum"));
+  return bank;
 }
 
-TEST(Interval, FilterAgreesWithTheIndependentReference) {
-  const json golden = test::read_golden("imm_quantised");
+TEST(Rounded, FilterAgreesWithTheIndependentReference) {
+  const json golden = test::read_golden("imm_rounded");
   for (const json& source : golden.at("cases")) {
-    const double quantum = source.at("quantum");
-    SCOPED_TRACE(quantum);
+    SCOPED_TRACE(source.at("quantum").dump() + source.at("R").dump());
     Trajectory run;
-    run.input = test::golden_rows(golden.at("input")).transpose();
-    run.state = test::golden_rows(source.at("measurement")).transpose();
-    const RunEvaluation actual = evaluate_run(golden_bank(golden.at("bank"), source.at("R"), quantum), run, {});
+    run.input = test::golden_rows(source.at("input")).transpose();
+    run.state = test::golden_columns(source.at("measurement"));
+    const RunEvaluation actual = evaluate_run(golden_bank(source), run, {});
     const json& expected = source.at("expected");
-    const auto row = [&](const char* name) {
-      return Eigen::MatrixXd(test::golden_rows(expected.at(name)).transpose());
-    };
-    EXPECT_TRUE(test::near(actual.log_density.transpose(), row("log_density"), 1e-7));
-    EXPECT_TRUE(test::near(actual.state, row("state"), 1e-7));
-    EXPECT_TRUE(test::near(actual.covariance, row("covariance"), 1e-7));
-    EXPECT_TRUE(test::near(actual.mode_probability, test::golden_columns(expected.at("mu")), 1e-7));
-    EXPECT_TRUE(test::near(actual.pit - 0.5 * actual.pit_width, row("low"), 1e-7));
-    EXPECT_TRUE(test::near(actual.pit + 0.5 * actual.pit_width, row("high"), 1e-7));
+    const auto columns = [&](const char* name) { return test::golden_columns(expected.at(name)); };
+    EXPECT_TRUE(test::near(actual.log_density.transpose(), columns("log_density"), 1e-10));
+    EXPECT_TRUE(test::near(actual.state, columns("state"), 1e-10));
+    EXPECT_TRUE(test::near(actual.covariance, columns("covariance"), 1e-10));
+    EXPECT_TRUE(test::near(actual.mode_probability, columns("mu"), 1e-10));
+    EXPECT_TRUE(test::near(actual.pit - 0.5 * actual.pit_width, columns("low"), 1e-10));
+    EXPECT_TRUE(test::near(actual.pit + 0.5 * actual.pit_width, columns("high"), 1e-10));
   }
 }
 
-TEST(Interval, QuantumZeroChangesNoBit) {
+/// Only the scores tell a quantum from the R that it asks for.
+TEST(Rounded, FilterIsThatOfTheLargerR) {
+  const double quantum = 0.2;
+  for (const Index n : {1, 2, 5}) {
+    Bank bank = with_quantum(test::example_bank(n, 2, 3, 0.0), quantum), with_R = bank;
+    with_R.quantum = {};
+    with_R.R.diagonal().setConstant(quantum * quantum / 12.0);
+    Trajectory run = rounded(test::simulate_bank(bank, 80, 3), quantum);
+    run.state(0, 30) = std::nan("");
+    const RunEvaluation a = evaluate_run(bank, run, {}), b = evaluate_run(with_R, run, {});
+    EXPECT_EQ(a.state, b.state);
+    EXPECT_EQ(a.covariance, b.covariance);
+    EXPECT_EQ(a.mode_probability, b.mode_probability);
+    EXPECT_TRUE(test::near(a.nis.tail(79), b.nis.tail(79), 0.0));
+    EXPECT_EQ(log_likelihood(bank, run, {}), log_likelihood(with_R, run, {}));
+    bank.R.diagonal().setConstant(1e-3);  // still less than the rounding
+    EXPECT_EQ(evaluate_run(bank, run, {}).state, b.state);
+  }
+}
+
+TEST(Rounded, QuantumZeroChangesNoBit) {
   for (const Index n : {1, 2, 6}) {
     const Bank bank = test::example_bank(n, 2, 3);
     const Trajectory run = test::simulate_bank(bank, 100, 3);
@@ -82,15 +101,14 @@ TEST(Interval, QuantumZeroChangesNoBit) {
   }
 }
 
-TEST(Interval, FineOnesHaveTheDensityOfContinuousSignals) {
+TEST(Rounded, FineOnesHaveTheDensityOfContinuousSignals) {
   const Bank bank = test::example_bank(2, 1, 2);
   const Trajectory run = test::simulate_bank(bank, 200, 5);
-  const FilterVariant variant = FilterVariant::imm;
-  FilterOptions options;
-  options.variant = variant;
-  const double continuous = log_likelihood(bank, run, options);
-  const double coarse = std::abs(log_likelihood(with_quantum(bank, 1e-3), run, options) - continuous);
-  const double fine = std::abs(log_likelihood(with_quantum(bank, 1e-5), run, options) - continuous);
+  const auto score = [&](double quantum) {
+    return evaluate_run(with_quantum(bank, quantum), run, {}).log_density.tail(199).sum();
+  };
+  const double continuous = log_likelihood(bank, run, {});
+  const double coarse = std::abs(score(1e-3) - continuous), fine = std::abs(score(1e-5) - continuous);
   EXPECT_LT(fine, 1e-3);
   EXPECT_LT(fine, 1e-2 * coarse + 1e-6);  // the difference grows with the square of the quantum
 }
@@ -111,7 +129,7 @@ double total_mass(Filter filter, const Trajectory& run, double quantum) {
   return sum;
 }
 
-TEST(Interval, MassesOfAllValuesSumToOne) {
+TEST(Rounded, MassesOfAllValuesSumToOne) {
   const double quantum = 0.02;
   const Bank bank = with_quantum(test::example_bank(1, 1, 2), quantum);
   const Trajectory run = rounded(test::simulate_bank(bank, 30, 2), quantum);
@@ -125,7 +143,7 @@ TEST(Interval, MassesOfAllValuesSumToOne) {
 
 /// Two independent systems, one rounded and one continuous, are filtered together. The results must equal those of each
 /// system alone.
-TEST(Interval, UnrelatedSignalsAreTakenInApart) {
+TEST(Rounded, UnrelatedSignalsAreTakenInApart) {
   Bank both = test::single_mode(test::example_bank(2, 1, 1), 0);
   Mode& mode = both.modes.front();
   mode.model.A = Eigen::Vector2d(-0.2, -0.5).asDiagonal();
@@ -143,10 +161,10 @@ TEST(Interval, UnrelatedSignalsAreTakenInApart) {
     one.quantum = both.quantum.segment(i, 1);
     Trajectory alone = run;
     alone.state = run.state.row(i);
-    const VectorXd densities = log_densities(one, alone, {});
+    const VectorXd densities = evaluate_run(one, alone, {}).log_density;
     sum += densities.unaryExpr([](double value) { return std::isnan(value) ? 0.0 : value; });
   }
-  const VectorXd joint = log_densities(both, run, {});
+  const VectorXd joint = evaluate_run(both, run, {}).log_density;
   EXPECT_TRUE(std::isnan(joint(50)));
   for (Index k = 1; k < run.samples(); ++k) {
     if (k != 50) {
@@ -155,10 +173,10 @@ TEST(Interval, UnrelatedSignalsAreTakenInApart) {
   }
 }
 
-/// The transform that programs get, sample by sample and for a whole run. The quantum is three standard deviations.
-TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
+/// The transform that programs get, sample by sample and for a whole run. The quantum is a standard deviation.
+TEST(Rounded, TransformOfTheInstalledFilterIsUniform) {
   const Index samples = 20000;
-  const double quantum = 0.3;
+  const double quantum = 0.1;
   Bank bank = test::single_mode(test::example_bank(1, 1, 1, 0.0), 0);
   bank.modes[0].Q(0, 0) = 1e-2;
   const Trajectory run = rounded(test::simulate_bank(bank, samples, 6), quantum);
@@ -177,7 +195,7 @@ TEST(Interval, TransformOfTheInstalledFilterIsUniform) {
   EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples)));
 }
 
-TEST(Interval, DrawsDependOnSeedRunAndSampleAlone) {
+TEST(Rounded, DrawsDependOnSeedRunAndSampleAlone) {
   const Bank bank = with_quantum(test::example_bank(1, 1, 2), 0.05);
   Trajectory run = rounded(test::simulate_bank(bank, 50, 6), 0.05);
   const auto drawn = [&](std::uint64_t seed) {
@@ -192,35 +210,16 @@ TEST(Interval, DrawsDependOnSeedRunAndSampleAlone) {
   EXPECT_NE(first, drawn(1));
 }
 
-TEST(Interval, AdaptiveNoiseFindsTheScaleOfRoundedRuns) {
-  Bank bank = test::example_bank(1, 1, 1, 0.0);
-  bank.modes[0].Q(0, 0) = 1e-2;
-  bank.noise_adaptation = {1.0, 5.0};
-  Bank rougher = bank;
-  rougher.modes[0].Q(0, 0) = 4e-2;
-  for (const double quantum : {0.05, 0.3}) {
-    const Trajectory run = rounded(test::simulate_bank(rougher, 4000, 8), quantum);
-    FilterOptions options;
-    options.noise = FilterNoise::adaptive;
-    BankFilter filter(with_quantum(bank, quantum), options);
-    for (Index k = 0; k < run.samples(); ++k) filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k));
-    EXPECT_NEAR(filter.snapshot().noise_scale, 4.0, 0.4) << quantum;
-  }
-}
-
-TEST(Interval, HorizonOneIsTheFiltersOwnScore) {
+TEST(Rounded, HorizonOneIsTheFiltersOwnScore) {
   const Bank bank = with_quantum(test::example_bank(1, 1, 2), 0.05);
   const Trajectory run = rounded(test::simulate_bank(bank, 60, 6), 0.05);
   const HorizonEvaluation ahead = evaluate_horizons(bank, run, {}, {1, 3});
-  const VectorXd densities = log_densities(bank, run, {});
+  const VectorXd densities = evaluate_run(bank, run, {}).log_density;
   for (Index k = 1; k < run.samples(); ++k) EXPECT_NEAR(ahead.log_density(0, k), densities(k), 1e-12);
 }
 
-TEST(Interval, RefusesWhatNoFilterCanTake) {
+TEST(Rounded, RefusesWhatNoFilterCanTake) {
   Bank bank = with_quantum(test::example_bank(2, 1, 2), 0.05);
-  FilterOptions paper;
-  paper.variant = FilterVariant::salvi2025;
-  EXPECT_THROW(BankFilter(bank, paper), std::invalid_argument);
   bank.R(0, 1) = bank.R(1, 0) = 1e-5;
   EXPECT_THROW(validate(bank), std::invalid_argument);
   bank.quantum = VectorXd::Ones(3);

@@ -1,4 +1,4 @@
-#include "filter/judge/run/drifting_mode_sequence.hpp"
+#include "filter/judge/run/mode_sequence.hpp"
 
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
@@ -8,20 +8,24 @@ namespace {
 
 using Eigen::Index;
 
+/// The mode of every moment. The forward pass keeps the log probability `score` of the best sequence that ends in each
+/// mode, and the mode before.
 template <int N, int NY>
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
                               const FilterOptions& options) {
   const FilterModel<N, NY> model(bank, options);
+  if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
   FilterStep<N, NY> step(model);
   FilterState<N> state = initial_state(model);
   const Index K = model.mode_count();
   Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
   Eigen::VectorXi best(instants.count());
+  Eigen::MatrixXd log_T = model.transition.matrix().array().log();
   Eigen::VectorXd score(K), next(K);
   for (Index t = 0; t < instants.count(); ++t) {
     const bool starts = instants.instants[static_cast<std::size_t>(t)].starts;
-    Eigen::MatrixXd log_T;
-    if (!starts) log_T = transition_of_step(model, state, instants.inputs.col(t), step).array().log();
+    if (!starts && !model.transition_logit.empty())
+      log_T = transition_of_step(model, state, instants.inputs.col(t), step).array().log();
     const bool measured = step_to(model, instants, t, run, state, step);
     for (Index j = 0; j < K && !starts; ++j) {
       Index before = j;
@@ -41,10 +45,14 @@ Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Run
 
 }  // namespace
 
-Eigen::VectorXi drifting_mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+Eigen::VectorXi mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
   const RunInstants instants(bank, run);
+  FilterOptions judged = options;
+  // The mixing of salvi2025, as printed, does not keep even a known state.
+  if (judged.variant == FilterVariant::salvi2025) judged.variant = FilterVariant::imm;
   const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
-    return best_sequence<N, NY>(bank, run, instants, options);
+    return best_sequence<N, NY>(bank, run, instants, judged);
   });
   Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
   for (Index t = 0; t < instants.count(); ++t)

@@ -1,13 +1,13 @@
-// The vector filter (one mode per lane), compared with the equations in all results.
-#include "filter/step/detail/vector/vector_imm.hpp"
-
+// Filters of fixed sizes, compared with the same equations of dynamic size in all results.
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <memory>
 
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
+#include "filter/step/stepper.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -61,14 +61,13 @@ TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
 
 /// Steps both filters through the run and compares all results, relative to the size of each number.
 void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
-  ASSERT_TRUE(VectorImm::can_step(bank, options));
   const FilterModel<any, any> model(bank, options);
   FilterStep<any, any> step(model);
   const Index n = bank.structure.dimension(), n_y = bank.C.rows();
   FilterState<any> state = start(model, run.state.col(0));
   Gaussian<any> estimate(n);
-  VectorImm kernel(bank, options);
-  kernel.start(run.state.col(0));
+  const std::unique_ptr<Stepper> fixed = make_stepper(bank, options);
+  fixed->start(run.state.col(0));
   VectorXd mean(n), expected_mean(n), pit(n_y), width = VectorXd::Zero(n_y), expected_pit(n_y), expected_width = width,
                                                 weights(bank.mode_count());
   MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
@@ -77,23 +76,23 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
   };
   for (Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);
-    kernel.predict(run.input.col(k - 1));
+    fixed->predict(run.input.col(k - 1));
     combine(model, step, expected_mean, expected_S);
-    kernel.combine(mean, S);
+    fixed->combine(mean, S);
     ASSERT_TRUE(same(mean, expected_mean)) << "sample " << k;
     ASSERT_TRUE(same(S, expected_S)) << "sample " << k;
-    ASSERT_TRUE(same(kernel.predicted_probability(), step.predicted_probability)) << "sample " << k;
+    ASSERT_TRUE(same(fixed->predicted_probability(), step.predicted_probability)) << "sample " << k;
     const double expected = update(model, run.state.col(k), step, state);
-    const double log_density = kernel.update(run.state.col(k));
+    const double log_density = fixed->update(run.state.col(k));
     merge(state.modes, state.mode_probability, estimate);
-    kernel.merge(mean, covariance);
+    fixed->merge(mean, covariance);
     ASSERT_TRUE(same(mean, estimate.mean)) << "sample " << k;
     ASSERT_TRUE(same(covariance, estimate.covariance)) << "sample " << k;
-    ASSERT_TRUE(same(kernel.mode_probability(), state.mode_probability)) << "sample " << k;
+    ASSERT_TRUE(same(fixed->mode_probability(), state.mode_probability)) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
-      kernel.transform(run.state.col(k), pit, width);
-      if (model.quantised)
+      fixed->transform(run.state.col(k), pit, width);
+      if (model.quantum.size() > 0)
         interval_transform(model, run.state.col(k), step, weights, expected_pit, expected_width);
       else
         probability_transform(run.state.col(k), step, weights, expected_pit);
@@ -106,14 +105,7 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
         ASSERT_NEAR(pit(i), expected_pit(i), 1e-15 + 1e3 * relative * tail) << "sample " << k << ", signal " << i;
       }
       ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
-      for (Index j = 0; j < bank.mode_count(); ++j)
-        for (Index i = 0; i < n_y; ++i) {
-          const KalmanStep<any, any>& kalman = step.kalman[static_cast<std::size_t>(j)];
-          ASSERT_NEAR(kernel.variance(i, j), kalman.cholesky.D(i), relative * kalman.cholesky.D(i));
-          ASSERT_NEAR(kernel.decorrelated(i, j), kalman.decorrelated(i), relative * 10.0);
-        }
     }
-    ASSERT_NEAR(kernel.noise_scale(), state.noise_scale, relative * state.noise_scale);
   }
 }
 
@@ -129,13 +121,7 @@ Bank many_modes(Index n, Index K) {
   return bank;
 }
 
-FilterOptions adaptive() {
-  FilterOptions options;
-  options.noise = FilterNoise::adaptive;
-  return options;
-}
-
-TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
+TEST(FixedSizes, SaysWhatTheGeneralStepsSay) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 8, 9, 25}) {
       const Bank bank = many_modes(n, K);
@@ -147,12 +133,11 @@ TEST(VectorImm, SaysWhatTheGeneralStepsSay) {
       run.state(n - 1, 60) += 3.0;
       SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
       expect_agreement(bank, run, {}, 1e-11);
-      expect_agreement(bank, run, adaptive(), 1e-11);
     }
 }
 
 /// A quantum of about a standard deviation, a tiny quantum, and one continuous signal.
-TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
+TEST(FixedSizes, ScoresIntervalsAsTheGeneralStepsDo) {
   for (const Index n : {1, 2, 3})
     for (const Index K : {2, 8, 9})
       for (const double quantum : {3e-2, 1e-6}) {
@@ -168,55 +153,10 @@ TEST(VectorImm, TakesIntervalsAsTheGeneralStepsDo) {
         run.state(n - 1, 60) += 3.0;  // a measurement far out in a tail
         SCOPED_TRACE(testing::Message() << n << " states, " << K << " modes, quantum " << quantum);
         expect_agreement(bank, run, {}, 1e-9);
-        expect_agreement(bank, run, adaptive(), 1e-9);
       }
 }
 
-/// All kernels must give the same results for a stretch, with or without missing signals.
-TEST(VectorImm, AStretchIsItsSamples) {
-  for (const Index n : {1, 2, 3})
-    for (const Index K : {2, 5, 9, 16, 17, 25})
-      for (const FilterOptions& options : {FilterOptions{}, adaptive()})
-        for (const bool missing : {false, true}) {
-          SCOPED_TRACE(std::to_string(n) + " states, " + std::to_string(K) + " modes");
-          const Bank bank = many_modes(n, K);
-          Trajectory run = test::simulate_bank(bank, 100, 57);
-          run.state(0, 70) += 0.5;
-          if (missing) run.state.col(40).setConstant(std::nan(""));
-          VectorImm at_once(bank, options), one_by_one(bank, options);
-          for (VectorImm* filter : {&at_once, &one_by_one}) filter->start(run.state.col(0));
-          VectorXd log_density(run.transitions());
-          at_once.follow(run.input.leftCols(run.transitions()), run.state.rightCols(run.transitions()), log_density);
-          for (Index k = 0; k < run.transitions(); ++k) {
-            one_by_one.predict(run.input.col(k));
-            const double expected = one_by_one.update(run.state.col(k + 1));
-            ASSERT_EQ(std::isnan(log_density(k)), std::isnan(expected)) << "transition " << k;
-            if (std::isnan(expected)) continue;
-            ASSERT_NEAR(log_density(k), expected, 1e-11 * std::max(1.0, std::abs(expected)));
-          }
-          EXPECT_TRUE(test::near(at_once.mode_probability(), one_by_one.mode_probability(), 1e-11));
-          VectorXd mean(n), expected_mean(n);
-          MatrixXd covariance(n, n), expected_covariance(n, n);
-          at_once.merge(mean, covariance);
-          one_by_one.merge(expected_mean, expected_covariance);
-          EXPECT_TRUE(test::near(mean, expected_mean, 1e-11));
-          EXPECT_TRUE(test::near(covariance, expected_covariance, 1e-11 * expected_covariance.norm()));
-        }
-}
-
-/// Numbers of modes that fill a register of any width, one mode more, one mode fewer, and more than eight registers.
-TEST(VectorImm, AnyNumberOfModes) {
-  for (const Index K : {2, 3, 4, 5, 7, 8, 9, 16, 17, 60}) {
-    const Bank bank = many_modes(1, K);
-    Trajectory run = test::simulate_bank(bank, 300, 31);
-    run.state.middleCols(40, 3).setConstant(std::nan(""));
-    run.state(0, 200) = 50.0;
-    SCOPED_TRACE(std::to_string(K) + " modes");
-    expect_agreement(bank, run, {}, 1e-11);
-  }
-}
-
-TEST(VectorImm, OneSignalOfSeveralStates) {
+TEST(FixedSizes, OneSignalOfSeveralStates) {
   for (const Index n : {2, 3, 4}) {
     Bank bank = many_modes(n, 5);
     bank.C = MatrixXd::Zero(1, n);
@@ -225,11 +165,10 @@ TEST(VectorImm, OneSignalOfSeveralStates) {
     bank.R = MatrixXd::Constant(1, 1, 1e-3);
     const Trajectory run = test::simulate_bank(bank, 60, 52);
     expect_agreement(bank, run, {}, 1e-11);
-    expect_agreement(bank, run, adaptive(), 1e-11);
   }
 }
 
-TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
+TEST(FixedSizes, CorrelatedNoiseAndImpossibleModes) {
   Bank bank = many_modes(3, 4);
   bank.R << 2e-4, 1e-4, 0, 1e-4, 3e-4, -5e-5, 0, -5e-5, 1e-4;
   bank.initial_probability << 0.5, 0.5, 0.0, 0.0;
@@ -238,29 +177,10 @@ TEST(VectorImm, CorrelatedNoiseAndImpossibleModes) {
   Trajectory run = test::simulate_bank(bank, 80, 53);
   run.state(1, 20) = std::nan("");
   expect_agreement(bank, run, {}, 1e-11);
-  expect_agreement(bank, run, adaptive(), 1e-11);
-}
-
-/// The noise scale must follow the possible modes, even if an impossible mode fits well.
-TEST(VectorImm, AnImpossibleModeHasNoSayInTheNoise) {
-  Bank bank = many_modes(1, 3);
-  bank.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
-  bank.modes[2].model.A.setZero();
-  bank.modes[2].model.c.setConstant(1.0);
-  Trajectory run = test::simulate_bank(bank, 20, 56);
-  run.input.setZero();
-  for (Index k = 0; k < run.samples(); ++k) run.state(0, k) = static_cast<double>(k);
-  expect_agreement(bank, run, adaptive(), 1e-9);
-  const FilterModel<any, any> model(bank, adaptive());
-  FilterStep<any, any> step(model);
-  FilterState<any> state = start(model, run.state.col(0));
-  predict(model, state, run.input.col(0), step);
-  update(model, run.state.col(1), step, state);
-  EXPECT_GT(state.noise_scale, 1.5);  // one step of a hundred standard deviations; the filter limits it to five
 }
 
 /// Impossible modes, diverging modes and no noise. All results must be finite.
-TEST(VectorImm, NeverSaysNaN) {
+TEST(FixedSizes, NeverSaysNaN) {
   const Bank usual = many_modes(1, 3);
   Bank dead = usual, exact = usual, unstable = usual, none = usual;
   dead.initial_probability << 1.0, 0.0, 0.0;
@@ -274,13 +194,13 @@ TEST(VectorImm, NeverSaysNaN) {
     run.state(0, 50) = 1e4;
     run.state(0, 60) = -1e29;
     run.state.middleCols(100, 200).setConstant(std::nan(""));
-    VectorImm kernel(bank, {});
-    kernel.start(run.state.col(0));
+    const std::unique_ptr<Stepper> fixed = make_stepper(bank, {});
+    fixed->start(run.state.col(0));
     for (Index k = 1; k < run.samples(); ++k) {
-      kernel.predict(run.input.col(k - 1));
-      const double log_density = kernel.update(run.state.col(k));
+      fixed->predict(run.input.col(k - 1));
+      const double log_density = fixed->update(run.state.col(k));
       ASSERT_EQ(std::isfinite(log_density), std::isfinite(run.state(0, k))) << "sample " << k;
-      ASSERT_TRUE(kernel.mode_probability().allFinite()) << "sample " << k;
+      ASSERT_TRUE(fixed->mode_probability().allFinite()) << "sample " << k;
     }
   }
   expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
@@ -288,7 +208,7 @@ TEST(VectorImm, NeverSaysNaN) {
 
 /// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes are equal, so the transform is that of a single
 /// normal distribution.
-TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
+TEST(FixedSizes, TransformsByTheNormalDistributionFunction) {
   Bank bank = test::example_bank(1, 1, 3);
   for (Mode& mode : bank.modes) {
     mode.model = {MatrixXd::Constant(1, 1, -1.0), MatrixXd::Zero(1, 1), VectorXd::Zero(1)};  // predicts zero
@@ -306,19 +226,19 @@ TEST(VectorImm, TransformsByTheNormalDistributionFunction) {
       {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
   VectorXd pit(1), width(1);
   for (const auto& [z, probability] : cases) {
-    VectorImm kernel(bank, {});
-    kernel.start(VectorXd::Zero(1));
-    kernel.predict(VectorXd::Zero(1));
+    const std::unique_ptr<Stepper> fixed = make_stepper(bank, {});
+    fixed->start(VectorXd::Zero(1));
+    fixed->predict(VectorXd::Zero(1));
     const VectorXd y = VectorXd::Constant(1, z);
-    kernel.update(y);
-    kernel.transform(y, pit, width);
+    fixed->update(y);
+    fixed->transform(y, pit, width);
     // z itself is rounded. This changes the tail in proportion to z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }
 }
 
 /// The modes' predictions are far apart and have small variances. Moments about the common mean would lose all digits.
-TEST(VectorImm, ModesFarApartKeepTheirVariances) {
+TEST(FixedSizes, ModesFarApartKeepTheirVariances) {
   Bank bank = many_modes(2, 9);
   for (Mode& mode : bank.modes) mode.Q *= 1e-6;
   bank.R.setIdentity();
@@ -327,29 +247,6 @@ TEST(VectorImm, ModesFarApartKeepTheirVariances) {
   for (Index j = 0; j < 9; ++j) bank.modes[static_cast<std::size_t>(j)].model.c.setConstant(static_cast<double>(j));
   const Trajectory run = test::simulate_bank(bank, 60, 55);
   expect_agreement(bank, run, {}, 1e-9);
-}
-
-TEST(VectorImm, SnapshotsGoBackAndForth) {
-  const Bank bank = many_modes(2, 5);
-  const Trajectory run = test::simulate_bank(bank, 10, 54);
-  VectorImm first(bank, {}), second(bank, {});
-  first.start(run.state.col(0));
-  for (Index k = 1; k < 9; ++k) {
-    first.predict(run.input.col(k - 1));
-    first.update(run.state.col(k));
-  }
-  FilterMemory memory;
-  first.save(memory);
-  second.start(run.state.col(0));
-  second.restore(memory);
-  for (VectorImm* filter : {&first, &second}) filter->predict(run.input.col(8));
-  EXPECT_EQ(second.update(run.state.col(9)), first.update(run.state.col(9)));
-}
-
-TEST(VectorImm, LeavesToTheGeneralStepsWhatItCannot) {
-  EXPECT_FALSE(VectorImm::can_step(test::example_bank(4, 1, 3), {}));
-  EXPECT_FALSE(VectorImm::can_step(test::example_bank(2, 1, 3), {FilterVariant::salvi2025}));
-  EXPECT_FALSE(VectorImm::can_step(test::single_mode(test::example_bank(2, 1, 3), 0), {}));
 }
 
 }  // namespace

@@ -1,9 +1,10 @@
-// Predictions by the drifting model some samples ahead.
+// Predictions some samples ahead: by banks, by banks with lags, and by the drifting model.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <random>
 #include <vector>
 
@@ -11,15 +12,146 @@
 #include "filter/step/drifting_forecast.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"
+#include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
+using test::example_bank;
 using test::example_drifting;
 using test::fixed;
 using test::near;
+using test::simulate_bank;
 using test::simulate_drifting;
+using test::single_mode;
+
+TEST(Horizon, OneSampleAheadIsWhatTheFilterSays) {
+  const Bank modes = example_bank(2, 1, 3);
+  Trajectory run = simulate_bank(modes, 60, 26);
+  run.state.col(30).setConstant(std::nan(""));
+  for (const FilterVariant variant : {FilterVariant::imm, FilterVariant::kf}) {
+    const Bank bank = test::steppable(modes, variant);
+    const RunEvaluation e = evaluate_run(bank, run, {variant});
+    const HorizonEvaluation h = evaluate_horizons(bank, run, {variant}, {4, 1});
+    EXPECT_EQ(h.horizons, (std::vector<Index>{1, 4}));
+    EXPECT_TRUE(near(h.error[0], e.innovation, 1e-14));
+    EXPECT_TRUE(near(h.log_density.row(0), e.log_density.transpose(), 1e-12));
+    EXPECT_TRUE(near(h.pit[0].row(0), e.pit.row(0), 1e-12));
+    EXPECT_TRUE(std::isnan(h.log_density(1, 3)) && !std::isnan(h.log_density(1, 4)));
+  }
+}
+
+TEST(Horizon, SeveralSamplesAheadIsTheModelRunOn) {
+  const Bank bank = single_mode(example_bank(2, 1, 2), 1);
+  const Trajectory run = simulate_bank(bank, 40, 27);
+  const HorizonEvaluation h = evaluate_horizons(bank, run, {}, {5});
+  const RunEvaluation e = evaluate_run(bank, run, {});
+  const Mode& mode = bank.modes[0];
+  const Eigen::Matrix2d F = mode.model.full_form();
+  for (Index k = 0; k + 5 < 40; ++k) {
+    Eigen::Vector2d x = e.state.col(k);
+    Eigen::Matrix2d P = e.covariance.col(k).reshaped(2, 2);
+    for (Index i = 0; i < 5; ++i) {
+      x = mode.model.next(x, run.input.col(k + i));
+      P = F * P * F.transpose() + mode.Q;
+    }
+    const Eigen::Matrix2d S = P + bank.R;
+    const Eigen::Vector2d error = run.state.col(k + 5) - x;
+    EXPECT_TRUE(near(h.error[0].col(k + 5), error, 1e-12));
+    for (Index i = 0; i < 2; ++i)
+      EXPECT_NEAR(h.pit[0](i, k + 5), 0.5 * std::erfc(-error(i) / std::sqrt(2.0 * S(i, i))), 1e-12);
+    EXPECT_NEAR(h.log_density(0, k + 5),
+                -std::log(2 * M_PI) - 0.5 * std::log(S.determinant()) - 0.5 * error.dot(S.inverse() * error), 1e-10);
+  }
+}
+
+TEST(Horizon, SummarisesRunsAndPools) {
+  const Bank bank = example_bank(1, 1, 2);
+  std::vector<Trajectory> runs{simulate_bank(bank, 30, 28), simulate_bank(bank, 50, 29)};
+  runs[1].run = "other";
+  std::vector<std::vector<HorizonSums>> sums;
+  for (const Trajectory& run : runs) sums.push_back(sum_horizons(evaluate_horizons(bank, run, {}, {1, 10})));
+  const std::vector<HorizonRow> rows = summarize_horizons("bank", runs, sums);
+  ASSERT_EQ(rows.size(), 6u);
+  EXPECT_EQ(rows[5].run, "*");
+  EXPECT_EQ(rows[5].horizon, 10);
+  EXPECT_EQ(rows[5].samples, 20 + 40);
+  EXPECT_NEAR(rows[5].log_score, (rows[1].log_score * 20 + rows[3].log_score * 40) / 60, 1e-12);
+  EXPECT_GT(rows[5].rmse(0), rows[4].rmse(0));
+  EXPECT_NEAR(rows[5].coverage_95, (rows[1].coverage_95 * 20 + rows[3].coverage_95 * 40) / 60, 1e-12);
+}
+
+/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts. With a deviation, they
+/// are treated like other rows.
+Bank lagged_bank(double R, double rounding = 0.0) {
+  Bank bank = example_bank(2, 1, 3, R);
+  const LinearStructure one_lag = bank.structure;
+  bank.structure.state_lags = 3;
+  bank.C = Eigen::MatrixXd::Identity(2, 6);
+  for (Mode& mode : bank.modes) {
+    Eigen::MatrixXd theta(2, bank.structure.regressors());  // layout of unpack: [A B c] by rows
+    theta << mode.model.A, Eigen::MatrixXd::Constant(2, 2, 0.05), Eigen::MatrixXd::Constant(2, 2, -0.04), mode.model.B,
+        mode.model.c;
+    mode.model = unpack(bank.structure, Eigen::MatrixXd(theta.transpose()).reshaped());
+    mode.model.A.bottomRows(4).array() += rounding;
+    Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(6, 6);
+    Q.topLeftCorner(one_lag.states, one_lag.states) = mode.Q;
+    mode.Q = Q;
+    mode.parameter_covariance = {};
+  }
+  return bank;
+}
+
+Trajectory run_with_gaps(std::uint64_t seed) {
+  Trajectory run = simulate_bank(example_bank(2, 1, 3), 120, seed);
+  run.state.col(30).setConstant(std::numeric_limits<double>::quiet_NaN());
+  run.state(0, 60) = std::numeric_limits<double>::quiet_NaN();
+  return run;
+}
+
+void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, double off) {
+  const Trajectory run = run_with_gaps(31);
+  const RunEvaluation left = evaluate_run(a, run, options), right = evaluate_run(b, run, options);
+  const Index first = 3, count = run.samples() - first;
+  const auto of = [&](const Eigen::MatrixXd& rows) { return Eigen::MatrixXd(rows.middleCols(first, count)); };
+  for (Index k = first; k < run.samples(); ++k) {
+    if (std::isnan(left.log_density(k))) continue;
+    EXPECT_NEAR(left.log_density(k), right.log_density(k), off * 1e3) << k;
+  }
+  EXPECT_TRUE(near(of(left.state), of(right.state), off));
+  EXPECT_TRUE(near(of(left.covariance), of(right.covariance), off));
+  EXPECT_TRUE(near(of(left.mode_probability), of(right.mode_probability), off * 1e2));
+  const HorizonEvaluation ahead = evaluate_horizons(a, run, options, {1, 5}),
+                          other = evaluate_horizons(b, run, options, {1, 5});
+  for (Index k = first + 5; k < run.samples(); ++k) {
+    if (std::isnan(ahead.log_density(1, k))) continue;
+    EXPECT_NEAR(ahead.log_density(1, k), other.log_density(1, k), off * 1e3) << k;
+  }
+}
+
+/// If lag rows are exact shifts, products use shorter loops.
+TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
+
+/// Exactly measured states are known, and computations are skipped. The result must be the limit for measurement
+/// noise that goes to zero.
+TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
+  expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
+}
+
+/// Earlier samples of a lagged state are in earlier columns.
+TEST(LaggedStates, EstimatesHoldTheSampleAlone) {
+  const Trajectory run = run_with_gaps(33);
+  for (const double R : {0.0, 1e-4}) {
+    const RunEvaluation e = evaluate_run(lagged_bank(R), run, {});
+    for (const Eigen::MatrixXd* states : {&e.prediction, &e.state}) EXPECT_EQ(states->rows(), 2);
+    EXPECT_EQ(e.covariance.rows(), 4);
+    for (Index k = 3; k < run.samples(); ++k) {
+      if (!run.state.col(k).allFinite()) continue;
+      EXPECT_TRUE(near(e.prediction.col(k), run.state.col(k) - e.innovation.col(k), 1e-12)) << k;
+    }
+  }
+}
 
 constexpr double ahead_digits = 1e-10;
 
