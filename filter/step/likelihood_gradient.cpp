@@ -30,8 +30,7 @@ struct ByState {
   }
 };
 
-/// Stores the state before each moment of a stretch. Before going back over a stretch that is not the last, it is
-/// filtered again.
+/// Stores the states of a stretch. A stretch that is not the last is filtered again before the way back over it.
 template <int N, int NY>
 class ReversePass {
   using StateVector = Eigen::Matrix<double, N, 1>;

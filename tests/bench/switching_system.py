@@ -1,8 +1,11 @@
-"""Systems that switch between linear modes (simulated by numpy), the filter with the true parameters, and runs of the program."""
+"""Systems that switch between linear modes (simulated by numpy), and runs of the program; what models of known systems are
+compared with: filters with the true parameters, step responses, and fits by scipy."""
 import math
 import subprocess
 
 import numpy as np
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
 
 DT_S = 0.1
 SD = 0.02
@@ -31,6 +34,76 @@ def sticky(g, count, stay_samples, samples):
     return z
 
 
+def signal(g, shape, low, high, count):
+    """Noise through two poles, held levels, two levels or numbers, which stay for low to high samples."""
+    if shape == "smooth":
+        noise = lfilter([1], np.poly(np.exp(-1 / g.uniform(low, high, 2))), g.standard_normal(count + int(9 * high)))
+        return noise[-count:] / noise.std()
+    steps = np.repeat(np.arange(count), np.maximum(1, np.round(g.uniform(low, high, count)).astype(int)))[:count]
+    if shape == "held":
+        return g.uniform(-1.7, 1.7, count)[steps]
+    return 2. * (steps % 2) - 1 if shape == "PRBS" else g.integers(1, max(2, shape), count).cumsum()[steps] % shape
+
+
+def filtered(F, V, C, R, x, P, pushed, y, chain=None):
+    """Innovations (sample, run, motion, reading), their covariances, and nats (sample, run, motion) of Kalman filters.
+
+    F and V of each motion, readings y = C x + v with variances R (motion, reading); x (run or 1, motion, state)
+    and P (motion, ...) before the first reading; pushed (run, sample, motion, state) by inputs, after each reading. With a chain nats are those of
+    the interacting multiple model filter (Blom & Bar-Shalom 1988), (sample, run)."""
+    P = P * np.ones((1 if chain is None else len(y), 1, 1, 1))
+    eye, chance, last, out = np.eye(len(C)), np.full((1, len(F)), 1 / len(F)), 0 * P, []
+    for k in range(y.shape[1]):
+        if chain is not None or abs(P - last).max() > 1e-12 * abs(P).max():  # else the filters are steady
+            S, last = C @ P @ C.T + R[:, :, None] * eye, P
+            M, L = np.linalg.inv(S), np.linalg.solve(S, C @ P).swapaxes(2, 3)
+            size, after = np.linalg.slogdet(2 * np.pi * S)[1], P - L @ S @ L.swapaxes(2, 3)
+            P = F @ after @ F.swapaxes(1, 2) + V
+        e = y[:, None, k] - x @ C.T
+        nats, x = -.5 * ((e * (M @ e[..., None])[..., 0]).sum(2) + size), x + (L @ e[..., None])[..., 0]
+        if chain is not None:
+            joint = (np.log(chance) + nats)[:, :, None] + np.log(chain)
+            ahead = np.logaddexp.reduce(joint, 1)
+            mixed, old, nats = np.exp(joint - ahead[:, None]), x, np.logaddexp.reduce(ahead, 1)
+            x, chance = np.einsum("rij,ris->rjs", mixed, old), np.exp(ahead - nats[:, None])
+            off = old[:, :, None] - x[:, None]
+            after = np.einsum("rij,rijst->rjst", mixed, after[:, :, None] + off[..., None] * off[..., None, :])
+            P = F @ after @ F.swapaxes(1, 2) + V
+        out.append((e, S, nats))
+        x = (F @ x[..., None])[..., 0] + pushed[:, k]
+    return [np.array(part) for part in zip(*out)]
+
+
+def response(F, G, C, d):
+    """Steady gains, and 63 % times interpolated inside a sample, of each model, reading and input.
+
+    x[k+1] = F x[k] + G[0] u[k-d] + G[1] u[k-d-1], y = C x."""
+    x, slowest = 0 * G[:, 0], abs(np.linalg.eigvals(F)).max()
+    share = [0 * (gain := C @ np.linalg.solve(np.eye(F.shape[1]) - F, G.sum(1)))]
+    for k in range(int(12 / -np.log(slowest)) + 10):
+        x = F @ x + G[:, 0] + G[:, 1] * (k > 0)
+        share.append(C @ x / gain)
+    after = np.argmax(np.array(share) >= .632, axis=0)[None]
+    low, high = (np.take_along_axis(np.array(share), after + j, 0)[0] for j in (-1, 0))
+    return gain, after[0] - 1 + (.632 - low) / (high - low) + d
+
+
+def half_deviance(y, u, order, delays):
+    """Half the deviance [nats] of ARMAX models of one reading (run, sample) by prediction errors; order: a row of the
+    archive's scores."""
+    if order["differences"]:
+        y, u = np.diff(y, axis=1), np.diff(u, axis=1)
+    noise, late = order["noise_lags"], lambda x, lag: x[:, 40 - lag:x.shape[1] - lag]
+    X = [np.ones_like(late(y, 0))] + [late(y, 1 + j) for j in range(order["state_lags"])]
+    X = np.stack(X + [late(u[..., i], d + j) for i, d in enumerate(delays) for j in range(order["input_lags"])], 2)
+
+    def errors(theta):
+        return lfilter([1], np.r_[1, theta[:noise]], late(y, 0) - X @ theta[noise:], axis=1).ravel()
+
+    start = np.linalg.lstsq(X.reshape(-1, X.shape[2]), late(y, 0).ravel(), rcond=None)[0]
+    return late(y, 0).size / 2 * np.log(least_squares(errors, np.r_[np.zeros(noise), start], x_scale="jac").cost)
+
+
 class Switching:
     """x[k+1] = x[k] + A x[k] + B u[k] + w, w of the deviation sd of the mode, y = x + v of variance R; mean stays of dwell samples."""
 
@@ -56,30 +129,13 @@ class Switching:
 
     def log_density(self, u, y):
         """Log density of every sample after the first, given the previous ones, by the IMM filter with the true parameters (exact for R = 0)."""
-        K, n = self.K, self.n
-        T = np.full((K, K), 1 / self.dwell / max(1, K - 1))
+        T = np.full((self.K, self.K), 1 / self.dwell / max(1, self.K - 1))
         np.fill_diagonal(T, 1 - 1 / self.dwell)
-        R = max(self.R, 1e-12) * np.eye(n)
-        mu, means, covs = np.full(K, 1 / K), [y[0].copy() for _ in range(K)], [R.copy() for _ in range(K)]
-        out = np.full(len(y), np.nan)
-        for k in range(1, len(y)):
-            c = T.T @ mu
-            mixed = T * mu[:, None] / c
-            start = [sum(mixed[i, j] * means[i] for i in range(K)) for j in range(K)]
-            spread = [sum(mixed[i, j] * (covs[i] + np.outer(means[i] - start[j], means[i] - start[j])) for i in range(K)) for j in range(K)]
-            logs = np.zeros(K)
-            for j in range(K):
-                F = np.eye(n) + self.A[j]
-                x, P = F @ start[j] + self.B[j] @ u[k - 1], F @ spread[j] @ F.T + self.sd[j] ** 2 * np.eye(n)
-                S, e = P + R, y[k] - x
-                gain = np.linalg.solve(S, P).T
-                logs[j] = -0.5 * (e @ np.linalg.solve(S, e) + np.linalg.slogdet(2 * np.pi * S)[1])
-                means[j], covs[j] = x + gain @ e, P - gain @ P
-            top = logs.max()
-            weights = c * np.exp(logs - top)
-            out[k] = top + math.log(weights.sum())
-            mu = weights / weights.sum()
-        return out
+        F, eye = np.eye(self.n) + np.array(self.A), np.eye(self.n)
+        R = np.full((self.K, self.n), max(self.R, 1e-12))
+        V, pushed = self.sd[:, None, None] ** 2 * eye, np.einsum("kni,si->skn", self.B, u)[None]
+        x, P = (F @ y[0] + pushed[0, 0])[None], R[0, 0] * F @ F.swapaxes(1, 2) + V
+        return np.r_[np.nan, filtered(F, V, eye, R, x, P, pushed[:, 1:], y[None, 1:], T)[2][:, 0]]
 
 
 def run_program(program, runs, folder, extra=()):

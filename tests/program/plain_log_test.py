@@ -71,16 +71,6 @@ class PlainLogs(ProgramTest):
         np.testing.assert_allclose(single["R"], 0.01, rtol=0.25)
         self.assertNotIn("doubt", self.told)
 
-    def test_two_inputs_with_their_own_delays(self):
-        for run in range(RUNS):
-            draw = np.random.default_rng(50 + run)
-            u, v = (held(draw, SAMPLES, 10, 60, [-1, 0, 1]) for _ in range(2))
-            y = plant(draw, u, 20, 2.0, 1, 0, (0.02, 0.0)) + plant(draw, v, 20, -1.0, 4, 0, (0.0, 0.05))
-            self.write(run, 0.1, "time,speed,motor_v,brake_v", y, u, v)
-        _, single = self.learned("--data.input", "motor_v, brake_v")
-        self.assertEqual(attributes(self.folder / "out.h5", "baseline")["input_delay"].tolist(), [1, 4])
-        np.testing.assert_allclose(single["steady_gain"][0, 0], [2.0, -1.0], rtol=0.05)
-
     def test_a_level_that_wanders_is_taken_in_differences(self):
         levels = []
         for run in range(RUNS):

@@ -36,6 +36,12 @@ class Run {
     });
   }
 
+  void learn_baseline(const LearningInputs& inputs) {
+    const CompetitorInputs& of = inputs.competitors;
+    const OneModel linear = one_model(recording_, *learned_.windows, motion_of(inputs.windows.window), of.linear);
+    learned_.baseline = learn_single_filter(recording_, linear, of, progress_);
+  }
+
   void cluster(const LearningInputs& inputs) {
     provide(Stage::mixture, inputs,
             [&] { learned_.mixture = modebank::cluster(recording_, *learned_.windows, inputs.mixture, progress_); });
@@ -162,8 +168,7 @@ void learn_all(const Recording& recording, const LearningOptions& asked, Stage l
   if (last < Stage::windows) return;
   inputs = learning_inputs(found_in(recording, options, learned.structure));
   run.identify(inputs);
-  if (last < Stage::bank && inputs.competitors.single)
-    learned.baseline = learn_single(recording, *inputs.competitors.single);
+  if (last < Stage::bank && learned.structure) run.learn_baseline(inputs);
   if (last >= Stage::mixture) run.cluster(inputs);
   if (last < Stage::bank) return;
   run.learn_competitors(inputs);

@@ -104,8 +104,12 @@ std::optional<Bank> nonlinear(const Recording& recording, LinearStructure struct
   return bank;
 }
 
-/// The baseline: one Kalman filter on the global model.
-Bank learn_single_filter(const Recording& recording, const OneModel& of, const Progress& progress) {
+}  // namespace
+
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
+                         const Progress& progress) {
+  if (inputs.single)
+    if (std::optional<Bank> bank = learn_single(recording, *inputs.single)) return *std::move(bank);
   Baseline baseline = learn_baseline(recording, of.global, of.structure);
   baseline.bank.model = of.model;
   if (of.structure.inputs > 0)
@@ -117,8 +121,6 @@ Bank learn_single_filter(const Recording& recording, const OneModel& of, const P
     progress.warning("baseline: the search for its noise did not reach a maximum of the likelihood");
   return std::move(baseline.bank);
 }
-
-}  // namespace
 
 std::optional<Bank> learn_single(const Recording& recording, const SingleModel& single) {
   std::optional<Eigen::VectorXd> R;
@@ -136,8 +138,7 @@ CompetitorsPart learn_competitors(const Recording& all, const WindowFits& window
                                   learned_words(part->transitions(Role::train), all.transitions(Role::train))));
   const OneModel linear = one_model(recording, windows, motion, inputs.linear);
   CompetitorsPart learned;
-  if (inputs.single) learned.baseline = learn_single(recording, *inputs.single);
-  if (!learned.baseline) learned.baseline = learn_single_filter(recording, linear, progress);
+  learned.baseline = learn_single_filter(recording, linear, inputs, progress);
   const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, progress);
   learned.noise_only = inputs.single && factor.empty()
                            ? noise_levels_of(*learned.baseline, recording)

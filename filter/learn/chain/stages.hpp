@@ -41,6 +41,9 @@ OneModel one_model(const Recording& recording, const WindowFits& windows, const 
 
 /// The baseline of the linear stage; empty where the training runs are too short for it.
 std::optional<Bank> learn_single(const Recording& recording, const SingleModel& single);
+/// The baseline: that of the linear stage, or one Kalman filter on the global model.
+Bank learn_single_filter(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs,
+                         const Progress& progress);
 
 CompetitorsPart learn_competitors(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
                                   const CompetitorInputs& inputs, const Progress& progress);

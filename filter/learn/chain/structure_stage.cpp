@@ -60,9 +60,20 @@ bool leaves_enough(const Recording& recording, const ArmaxFit& fit, Index most) 
   return 4 * lost <= recording.transitions(Role::train) && (most == 0 || memory <= most);
 }
 
+/// States the answer of the linear stage before stages choose among few lags, which takes most of the time.
+void tell_of(const ArmaxFit& fit, const Recording& recording, const Progress& progress) {
+  const StepResponse response = bank_of(recording, fit, std::nullopt).modes.front().response.value;
+  const auto list = [](const Eigen::MatrixXd& of) { return fmt::join(of.data(), of.data() + of.size(), ", "); };
+  progress.progress(fmt::format("linear model: {} state and {} noise lags{}; gain {:.4g}, 63 % after {:.4g} s",
+                                fit.order.state_lags, fit.order.noise_lags,
+                                fit.order.differences ? ", in differences" : "", list(response.gain),
+                                list(response.response_s)));
+}
+
 /// The linear stage (ident/lag/armax.hpp) on recordings whose structure is searched as a whole. Empty where it does not
 /// apply, and where more than one lag of an ARX explain the runs best: then lags are searched by least squares.
-std::optional<FoundStructure> linear_structure_of(const Recording& recording, const StructureInputs& inputs) {
+std::optional<FoundStructure> linear_structure_of(const Recording& recording, const StructureInputs& inputs,
+                                                  const Progress& progress) {
   constexpr Index few_lags = 2;
   const SearchedLags& searched = inputs.searched;
   const bool acted_on = recording.input_count() > 0;
@@ -76,6 +87,7 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   if (fit.order.noise_lags == 0 && fit.order.state_lags > few_lags) return {};
   const double rounding = std::numeric_limits<double>::epsilon() * recording.runs.front().states().norm();
   if (!leaves_enough(recording, fit, searched.most_samples) || fit.S.trace() < rounding * rounding) return {};
+  tell_of(fit, recording, progress);
   const auto best = std::ranges::min_element(stage.candidates, {}, &ArmaxCandidate::lost);
   FoundStructure found;
   for (const ArmaxCandidate& one : stage.candidates) found.scores.push_back(row_of(one, *best, stage.rows));
@@ -91,23 +103,11 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   return found;
 }
 
-/// States the answer of the linear stage before the windows start.
-void tell_of(const FoundStructure& found, const Recording& recording, bool intercept, const Progress& progress) {
-  const auto linear = std::ranges::find_if(found.scores, &StructureScore::linear);
-  if (linear == found.scores.end() || (linear->noise_lags == 0 && !linear->differences)) return;
-  const ArmaxStructure structure = armax_of(*linear, found, recording.input_count(), intercept);
-  const StepResponse response = learn_single(recording, {structure, {}}).value().modes.front().response.value;
-  const auto list = [](const Eigen::MatrixXd& of) { return fmt::join(of.data(), of.data() + of.size(), ", "); };
-  progress.progress(fmt::format("linear model: {} state and {} noise lags{}; gain {:.4g}, 63 % after {:.4g} s",
-                                linear->state_lags, linear->noise_lags, linear->differences ? ", in differences" : "",
-                                list(response.gain), list(response.response_s)));
-}
-
 }  // namespace
 
 FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Progress& progress) {
   const Stopwatch watch;
-  std::optional<FoundStructure> linear = linear_structure_of(recording, inputs);
+  std::optional<FoundStructure> linear = linear_structure_of(recording, inputs, progress);
   FoundStructure found = linear ? std::move(*linear) : find_structure(recording, inputs.window, inputs.searched);
   if (found.remark.empty() && is_repeated(recording))
     found.remark = "no sensor noise was looked for, because over 10 % of the samples repeat the one before";
@@ -115,7 +115,6 @@ FoundStructure search_structure(const Recording& recording, const StructureInput
   of_stages.window.input_delay = found.input_delay;
   choose_for_stages(recording, of_stages, found);
   progress.progress(fmt::format("structure: {} structures compared in {:.2f} s", found.structures, watch.seconds()));
-  tell_of(found, recording, inputs.window.intercept, progress);
   if (!found.remark.empty()) progress.warning("structure: " + found.remark);
   return found;
 }

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/unidentifiable_regressors.hpp"
@@ -16,26 +15,20 @@ namespace modebank {
 
 void refuse_constant_states(const Recording& recording) {
   for (Index i = 0; i < recording.state_count(); ++i) {
-    double least = std::numeric_limits<double>::infinity(), largest = -least;
-    std::vector<std::string> runs;
+    double least = INFINITY, largest = -least;
     for (const Trajectory& run : recording.runs) {
       if (run.role != Role::train) continue;
-      runs.push_back(run.run);
       for (const double value : run.state.row(i)) {
         if (!std::isfinite(value)) continue;
         least = std::min(least, value);
         largest = std::max(largest, value);
       }
-      if (least < largest) break;
     }
     if (least != largest) continue;
-    constexpr std::size_t most_named = 5;
-    const std::string more = runs.size() > most_named ? fmt::format(" and {} more", runs.size() - most_named) : "";
-    runs.resize(std::min(runs.size(), most_named));
     throw DataError(
-        fmt::format("the state {0} is constant: {1:g} in every sample of the training runs {2}{3}; nothing "
+        fmt::format("the state {0} is constant: {1:g} in every sample of the training runs; nothing "
                     "can be learned about it. Remove {0} from data.state, or train on runs in which it changes",
-                    recording.states[static_cast<std::size_t>(i)].name, least, fmt::join(runs, ", "), more));
+                    recording.states[static_cast<std::size_t>(i)].name, least));
   }
 }
 

@@ -88,24 +88,6 @@ TEST(Armax, EqualsScipy) {
   }
 }
 
-TEST(Armax, HeatersComeOutAsTheyAre) {
-  constexpr std::uint64_t seeds = 12;
-  const Heater heater;
-  Index outside = 0, smallest = 0;
-  VectorXd R(seeds);
-  for (std::uint64_t seed = 0; seed < seeds; ++seed) {
-    const LinearStage stage = find_linear_stage(simulate(heater, seed));
-    const ArmaxFit& fit = fit_of(stage, {false, 1, 1, 1});
-    smallest += stage.fit().order == fit.order;
-    for (const double deviation : deviations(fit, heater)) outside += std::abs(deviation) > 2.0;
-    R(static_cast<Index>(seed)) = noises(fit).R(0);
-    EXPECT_THAT(stage.fit().delays, ElementsAre(heater.delay));
-  }
-  EXPECT_LE(outside, 4);  // of 24 with a share of 0.0455: more in 0.4 % of all cases
-  EXPECT_GE(smallest, 11);
-  EXPECT_NEAR(R.mean(), heater.R, 3.0 * std::sqrt((R.array() - R.mean()).square().sum() / 11.0 / 12.0));
-}
-
 TEST(Armax, DifferencesWinWhereTheLevelWanders) {
   Heater heater;
   heater.wander = 0.05;

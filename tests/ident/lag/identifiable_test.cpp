@@ -48,30 +48,9 @@ TEST(Identifiable, NamesTheLawOfALoggedSetPoint) {
   EXPECT_FALSE(law.follows_states);
 }
 
-TEST(Identifiable, RefusesASetPointAtRest) {
-  for (const SetPoint logged : {SetPoint::logged, SetPoint::hidden}) {
-    const Identifiability found = look(plant(Input::follows_set_point, logged, 0.0));
-    ASSERT_EQ(found.relations.size(), 1);
-    EXPECT_TRUE(found.relations[0].follows_states);
-    EXPECT_NEAR(found.relations[0].constant, gain * 20.0, 1e-2);
-    EXPECT_EQ(found.resting.size(), logged == SetPoint::logged ? 1 : 0);
-  }
-}
-
 TEST(Identifiable, HasNothingAgainstMovingInputs) {
   EXPECT_TRUE(look(plant(Input::held, SetPoint::hidden, 1.0)).relations.empty());
   EXPECT_TRUE(look(plant(Input::follows_set_point, SetPoint::hidden, 1.0)).relations.empty());
-}
-
-/// An integral law has the input's own previous value.
-TEST(Identifiable, FindsALawOverSeveralSamples) {
-  Recording recording = plant(Input::held, SetPoint::hidden, 1.0);
-  MatrixXd& u = recording.runs[0].input;
-  const MatrixXd& x = recording.runs[0].state;
-  for (Index k = 1; k < u.cols(); ++k) u(k) = 0.5 * u(k - 1) - 2.0 * x(k) + 1.5 * x(k - 1) + 10.0;
-  const Identifiability found = identifiable(recording, Eigen::Vector2d(quantum, 0.0));
-  ASSERT_EQ(found.relations.size(), 1);
-  EXPECT_TRUE(found.relations[0].follows_states);
 }
 
 TEST(Identifiable, FindsSumsOfInputsAndInputsAtRest) {

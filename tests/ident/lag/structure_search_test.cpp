@@ -74,12 +74,6 @@ int seeds_with(const System& system, const std::array<Index, 3>& expected, int s
 
 TEST(StructureSearch, FindsOneLagWhereThereIsOne) { EXPECT_GE(seeds_with({}, {1, 1, 1}, 20), 18); }
 
-TEST(StructureSearch, FindsADeadTime) {
-  System late;
-  late.delay = 4;  // three samples without an effect
-  EXPECT_GE(seeds_with(late, {1, 1, 4}, 20), 17);
-}
-
 TEST(StructureSearch, FindsTheOrderOfASecondOrderMotion) {
   System second;
   second.a = {1.5, -0.7};
