@@ -7,6 +7,7 @@
 
 #include "app/chain/model_rows.hpp"
 #include "app/config/section.hpp"
+#include "app/text/mode_dynamics.hpp"
 #include "app/text/mode_names.hpp"
 #include "filter/learn/chain/chain.hpp"
 #include "filter/learn/chain/training_check.hpp"
@@ -127,7 +128,10 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
     case Stage::competitors:
       return provide<CompetitorsPart>(stage, compute);
     default:
-      return provide<BankPart>(Stage::bank, compute);
+      return provide<BankPart>(Stage::bank, [&] {
+        compute();
+        if (archive_.bank) add_responses(*archive_.bank);
+      });
   }
 }
 

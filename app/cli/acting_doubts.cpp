@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -80,8 +81,9 @@ std::string same_sample_doubt(const Recording& recording, const ArmaxStructure& 
       fmt::join(gains, ", "), fmt::join(names_of(recording.states), ", "));
 }
 
+/// Not of held inputs: where those act at once, a delay of 1 makes sensor noise of their jumps.
 std::string noise_doubt(const Recording& recording, const ArmaxStructure& structure, const Eigen::VectorXd& rmse) {
-  if (std::count(structure.delays.begin(), structure.delays.end(), 0) == 0) return "";
+  if (std::ranges::equal(structure.delays, least_delays(recording), std::greater_equal())) return "";
   LinearStageOptions options;
   options.intercept = structure.order.intercept;
   const LinearStage stage = find_linear_stage(recording, options);
@@ -93,8 +95,7 @@ std::string noise_doubt(const Recording& recording, const ArmaxStructure& struct
     if (const Channel& state = recording.states[static_cast<std::size_t>(i)]; rmse(i) < noise - 2.0 * error)
       return fmt::format(
           "with a delay of 0, {0} is predicted within {1:.2g}{3}, which is below its sensor noise of {2:.2g}{3} (the "
-          "best "
-          "linear model of delay 1 or more): an input is computed from {0}, so set window.input_delay = 1 or more",
+          "best linear model of delay 1 or more): an input is computed from {0}, so set window.input_delay = 1 or more",
           state.name, rmse(i), noise, state.unit.empty() ? "" : " " + state.unit);
   }
   return "";

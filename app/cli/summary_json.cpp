@@ -15,7 +15,7 @@ json errors_json(const std::vector<ErrorAhead>& errors) {
   json list = json::array();
   for (const ErrorAhead& error : errors)
     list.push_back({{"steps", error.steps},
-                    {"bank", json_numbers(error.bank)},
+                    {"rmse", json_numbers(error.rmse)},
                     {"combined", json_numbers(error.combined)},
                     {"fit_percent", json_numbers(error.fit_percent)}});
   return list;
@@ -26,11 +26,8 @@ json forecasts_json(const std::vector<NamedForecast>& forecasts) {
   for (const NamedForecast& forecast : forecasts)
     list.push_back({{"steps", forecast.steps},
                     {"filter", forecast.filter},
-                    {"other", forecast.other},
-                    {"gain", json_number(forecast.gain)},
-                    {"gain_error", json_number(forecast.error)},
-                    {"c_filter", forecast.c_filter.empty() ? forecast.filter : forecast.c_filter},
-                    {"c_loss", forecast.c_filter.empty() ? json(0.0) : json_number(forecast.c_loss)}});
+                    {"rmse", json_numbers(forecast.rmse)},
+                    {"c_filter", forecast.c_filter}});
   return list;
 }
 
@@ -73,6 +70,7 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"forecasts", forecasts_json(screen.forecasts)},
           {"answer", answer},
           {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
+          {"filter", screen.filter},
           {"competitor", screen.competitor},
           {"gain", json_number(screen.gain)},
           {"gain_error", json_number(screen.gain_error)},

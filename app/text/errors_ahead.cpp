@@ -59,10 +59,10 @@ Eigen::VectorXd fit_percent(const Eigen::VectorXd& rmse, const Eigen::VectorXd& 
 /// Text such as "0.0301 rad/s (1.72 deg/s), FIT 92.3 %". With several states, each value follows the name of its state.
 std::string error_words(const ErrorAhead& error, const std::vector<Channel>& states) {
   std::vector<std::string> parts;
-  for (Index i = 0; i < error.bank.size(); ++i) {
+  for (Index i = 0; i < error.rmse.size(); ++i) {
     const Channel state = static_cast<std::size_t>(i) < states.size() ? states[static_cast<std::size_t>(i)] : Channel{};
-    const std::string name = error.bank.size() > 1 ? state.name + " " : "";
-    parts.push_back(name + with_degrees(error.bank(i), state.unit) +
+    const std::string name = error.rmse.size() > 1 ? state.name + " " : "";
+    parts.push_back(name + with_degrees(error.rmse(i), state.unit) +
                     (error.fit_percent.size() > i ? fmt::format(", FIT {:.1f} %", error.fit_percent(i)) : ""));
   }
   return boost::algorithm::join(parts, ", ");
@@ -71,39 +71,38 @@ std::string error_words(const ErrorAhead& error, const std::vector<Channel>& sta
 /// Text such as "0.0301", or "0.0301, 0.2" with two states.
 std::string digits(const Eigen::VectorXd& values) { return fmt::format("{:.3g}", fmt::join(values, ", ")); }
 
-/// The bank's error some steps ahead, and the errors of other filters. `row_of` returns the scores of a filter, or
-/// null.
+/// A filter's error some steps ahead, and the errors of others. `row_of` returns the scores of a filter, or null.
 template <class RowOf>
-void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& competitor,
-               std::vector<ErrorAhead>& errors) {
-  if (!row_of("bank")) return;
+void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& filter,
+               const std::string& other, std::vector<ErrorAhead>& errors) {
+  if (!row_of(filter)) return;
   const auto rmse_of = [&](const std::string& name) { return row_of(name) ? row_of(name)->rmse : Eigen::VectorXd(); };
   ErrorAhead error;
   error.steps = steps;
-  error.bank = rmse_of("bank");
-  error.coverage_95 = row_of("bank")->coverage_95;
-  error.competitor = competitor.empty() ? Eigen::VectorXd() : rmse_of(competitor);
+  error.rmse = rmse_of(filter);
+  error.coverage_95 = row_of(filter)->coverage_95;
   error.combined = rmse_of(combined_name);
-  error.fit_percent = fit_percent(error.bank, standard_deviation_of_measurements(archive, role, steps));
-  error.bank_words = error_words(error, archive.recording ? archive.recording->states : std::vector<Channel>());
+  error.fit_percent = fit_percent(error.rmse, standard_deviation_of_measurements(archive, role, steps));
+  error.words = error_words(error, archive.recording ? archive.recording->states : std::vector<Channel>());
   std::vector<std::string> others;
-  if (error.competitor.size() > 0) others.push_back(fmt::format("{} {}", competitor, digits(error.competitor)));
-  if (error.combined.size() > 0) others.push_back(fmt::format("combined {}", digits(error.combined)));
+  for (const std::string& name : {other, std::string(combined_name)})
+    if (name != filter && rmse_of(name).size() > 0) others.push_back(fmt::format("{} {}", name, digits(rmse_of(name))));
   error.other_words = boost::algorithm::join(others, ", ");
   errors.push_back(error);
 }
 
 }  // namespace
 
-std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& competitor) {
+std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& filter,
+                                     const std::string& other) {
   std::vector<ErrorAhead> errors;
   add_error(
-      1, [&](const std::string& filter) { return pooled_row(archive, filter, role); }, archive, role, competitor,
+      1, [&](const std::string& name) { return pooled_row(archive, name, role); }, archive, role, filter, other,
       errors);
-  if (const HorizonRow* far = longest_horizon(archive, "bank", role))
+  if (const HorizonRow* far = longest_horizon(archive, filter, role))
     add_error(
-        far->horizon, [&](const std::string& filter) { return horizon_row(archive, filter, role, far->horizon); },
-        archive, role, competitor, errors);
+        far->horizon, [&](const std::string& name) { return horizon_row(archive, name, role, far->horizon); }, archive,
+        role, filter, other, errors);
   return errors;
 }
 

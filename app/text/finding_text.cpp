@@ -39,39 +39,23 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return found == finding.gains.end() ? nullptr : &*found;
 }
 
-/// Text such as "; error from 12 stretches", if there are too few runs for a standard error over runs.
-std::string stretches_words(const Finding& finding) {
-  const PairedGain* const gain = gain_over(finding, finding.best_competitor);
-  if (!gain || !gain->by_blocks || !std::isfinite(gain->standard_error)) return "";
-  return fmt::format("; error from {:.0f} stretches", gain->degrees_of_freedom + 1.0);
-}
-
 bool falls_short_of(const Finding& finding, const std::string& competitor) {
   const PairedGain* const gain = gain_over(finding, competitor);
   return gain && gain->falls_short();
 }
 
-/// Text such as "; more than 0.103 passes", if the answer depends on this threshold of the gain.
-std::string passing_gain(const Finding& finding) {
-  const PairedGain* const gain = gain_over(finding, finding.best_competitor);
-  const bool decides = finding.answer == Answer::evidence || finding.answer == Answer::no_evidence;
-  if (!decides || !gain || !std::isfinite(gain->margin)) return "";
-  return fmt::format("; more than {:.3f} passes", std::max(gain->margin, negligible_gain));
-}
-
 /// Sentence on the gain. Example:
 /// "switching between 5 linear models predicts the 6 held-out runs better than the best single model (`one_motion`: one
-/// linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample; more than
-/// 0.103 passes)."
+/// linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample)."
 std::string gain_sentence(const Finding& finding, const char* start) {
   if (finding.best_competitor.empty()) return "";
   const char* const than = falls_short_of(finding, finding.best_competitor) ? "worse than"
                            : finding.gain < negligible_gain                 ? "no better than"
                                                                             : "better than";
-  return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}{}{}).",
+  return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}).",
                      start, counted(finding.modes, "linear model"), judged(finding), than,
                      described(finding, finding.best_competitor), likelihood_words(finding.gain),
-                     gain_words(finding.gain, finding.standard_error), passing_gain(finding), stretches_words(finding));
+                     gain_words(finding.gain, finding.standard_error));
 }
 
 std::string gain_words(const PairedGain& gain) {

@@ -50,16 +50,21 @@ std::string file_line(const std::string& file, int columns) {
 /// The section on modes, at most `lines` lines. Two of these are headings.
 std::string modes_section(const Archive& archive, const FirstScreen& screen, int lines, int columns,
                           const std::string& unit) {
+  if (screen.modes.rows.empty())
+    return section("modes",
+                   fmt::format("{} in the bank, which predicts no better than `{}`; `modebank show` has them",
+                               screen.mode_count, archive.finding->better_description),
+                   2, columns);
   const std::string indent(2, ' ');
   ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()), unit);
   std::string& table = modes.text;
   boost::algorithm::trim_right(table);
   boost::replace_all(table, "\n", "\n" + indent);
   const Index families = screen.modes.families;
-  std::string head = families < screen.mode_count
-                         ? fmt::format("{} in {} famil{} on {} runs", screen.mode_count, families,
-                                       families == 1 ? "y" : "ies", words_for(screen.role))
-                         : fmt::format("{} on {} runs", screen.mode_count, words_for(screen.role));
+  std::string head = fmt::format("{}", screen.mode_count);
+  if (families < screen.mode_count) head += fmt::format(" in {} famil{}", families, families == 1 ? "y" : "ies");
+  head += fmt::format(" on {} {}", words_for(screen.role),
+                      noun_of_runs(2, archive.recording && are_stretches(*archive.recording)));
   const bool units = !screen.modes.gain_unit.empty();
   if (units) head += fmt::format("; gains in {}", screen.modes.gain_unit);
   if (modes.gains_left_out > 0)

@@ -127,4 +127,13 @@ ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode) {
   return dynamics;
 }
 
+void add_responses(Bank& bank) {
+  const LinearStructure& s = bank.structure;
+  if (s.inputs == 0 || !bank.terms.empty()) return;
+  for (Eigen::Index k = 0; k < bank.mode_count(); ++k)
+    if (Mode& mode = bank.modes[static_cast<std::size_t>(k)]; mode.response.value.gain.size() == 0)
+      mode.response = step_response(s, bank.theta(k), covariance_of(mode, s.parameters()),
+                                    s.input_delay.by_input(s.inputs), bank.dt_s);
+}
+
 }  // namespace modebank

@@ -30,4 +30,7 @@ struct ModeDynamics {
 /// of their mean.
 ModeDynamics mode_dynamics(const Bank& bank, Eigen::Index mode);
 
+/// Sets the step responses of modes that have none, with errors by draws from the covariance described above.
+void add_responses(Bank& bank);
+
 }  // namespace modebank

@@ -11,7 +11,6 @@
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
 #include "filter/judge/decide/finding.hpp"
-#include "ident/base/clustered_error.hpp"
 
 namespace modebank::app {
 namespace {
@@ -66,43 +65,22 @@ const Reached* simplest_good(const std::vector<Reached>& all, May may) {
   return nullptr;
 }
 
-/// Mean log score and number of samples of each judged run.
-struct OfRuns {
-  std::vector<double> score, samples;
+/// Scores of a filter on the judged runs; NaN and empty if there are none.
+struct Judged {
+  double log_score = not_a_number;
+  Eigen::VectorXd rmse = {};
 };
 
-template <class Row>
-void add_runs(const std::vector<Row>& rows, const std::string& filter, Role role, Index steps, OfRuns& runs) {
-  for (const Row& row : rows) {
-    if (row.filter != filter || row.role != role || row.run == "*" || horizon_of(row) != steps || row.samples == 0)
-      continue;
-    runs.score.push_back(row.log_score);
-    runs.samples.push_back(static_cast<double>(row.samples));
-  }
-}
-
-OfRuns runs_of(const Archive& archive, const std::string& filter, Index steps) {
-  OfRuns runs;
-  if (steps == 1) add_runs(archive.summary, filter, judged_role(archive), steps, runs);
-  if (runs.score.empty()) add_runs(archive.horizons, filter, judged_role(archive), steps, runs);
-  return runs;
-}
-
-struct Gain {
-  double mean = not_a_number, error = not_a_number;
-};
-
-/// Gain of log score on the judged runs, over another filter.
-Gain gain_over(const Archive& archive, const std::string& better, const std::string& other, Index steps) {
-  const OfRuns a = runs_of(archive, better, steps), b = runs_of(archive, other, steps);
-  if (a.score.empty() || a.samples != b.samples) return {};
-  Eigen::VectorXd sums(std::ssize(a.score)), samples(sums.size());
-  for (Index i = 0; i < sums.size(); ++i) {
-    const auto at = static_cast<std::size_t>(i);
-    samples(i) = a.samples[at];
-    sums(i) = samples(i) * (a.score[at] - b.score[at]);
-  }
-  return {sums.sum() / samples.sum(), sums.size() > 1 ? clustered_error(sums, samples) : not_a_number};
+Judged judged(const Archive& archive, const std::string& filter, Index steps) {
+  Judged found;
+  const auto look = [&](const auto& rows) {
+    for (const auto& row : rows)
+      if (row.filter == filter && row.role == judged_role(archive) && row.run == "*" && horizon_of(row) == steps)
+        found = {row.log_score, row.rmse};
+  };
+  look(archive.horizons);
+  if (steps == 1) look(archive.summary);
+  return found;
 }
 
 /// The filter to name at a horizon; null without filters. Nothing is named against the simpler model of the finding, or
@@ -116,7 +94,7 @@ const Reached* best_of(const Archive& archive, const std::vector<Reached>& all, 
   for (const Reached& one : all)
     if (&one < good && one.filter == simpler &&
         ((steps == 1 && good->filter == "bank" && simpler == described) ||
-         gain_over(archive, good->filter, simpler, steps).mean < negligible_gain))
+         judged(archive, good->filter, steps).log_score - judged(archive, simpler, steps).log_score < negligible_gain))
       return &one;
   return good;
 }
@@ -129,21 +107,9 @@ bool runs_in_c(const Archive& archive, const std::string& filter) {
 }
 
 NamedForecast named(const Archive& archive, const std::vector<Reached>& all, const Reached& chosen, Index steps) {
-  NamedForecast forecast;
-  forecast.steps = steps;
-  forecast.filter = chosen.filter;
-  if (chosen.filter != "bank")
-    forecast.other = "bank";
-  else if (const Reached* next = simplest_good(all, [](const std::string& name) { return name != "bank"; }))
-    forecast.other = next->filter;
-  const Gain gain = gain_over(archive, forecast.filter, forecast.other, steps);
-  forecast.gain = gain.mean;
-  forecast.error = gain.error;
   const Reached* in_c = simplest_good(all, [&](const std::string& name) { return runs_in_c(archive, name); });
-  if (!in_c || in_c->filter == chosen.filter) return forecast;
-  forecast.c_filter = in_c->filter;
-  forecast.c_loss = gain_over(archive, forecast.filter, in_c->filter, steps).mean;
-  return forecast;
+  const bool itself = !in_c || runs_in_c(archive, chosen.filter);
+  return {steps, chosen.filter, judged(archive, chosen.filter, steps).rmse, itself ? chosen.filter : in_c->filter};
 }
 
 std::string understanding(const Archive& archive) {
@@ -151,30 +117,6 @@ std::string understanding(const Archive& archive) {
   if (finding.answer == Answer::evidence) return fmt::format("the {} modes", archive.bank->mode_count());
   if (!finding.better_description.empty()) return fmt::format("`{}`", finding.better_description);
   return archive.bank->mode_count() == 1 ? "the one mode" : "the modes, with care";
-}
-
-/// The filter to compare with: the finding's best competitor. If that competitor is itself the named forecast, the
-/// bank.
-std::string reference_of(const NamedForecast& forecast, const Finding& finding) {
-  const std::string& competitor = finding.best_competitor;
-  return competitor.empty() || competitor == forecast.filter ? "bank" : competitor;
-}
-
-/// Text such as " (+0.041 +- 0.012 nats over `drifting`; in C `bank`, -0.041)".
-std::string worth(const Archive& archive, const NamedForecast& forecast) {
-  std::vector<std::string> parts;
-  const std::string other = reference_of(forecast, *archive.finding);
-  const Gain gain = other == forecast.filter ? Gain{} : gain_over(archive, forecast.filter, other, forecast.steps);
-  if (!std::isnan(gain.mean)) {
-    const std::string error = std::isnan(gain.error) ? "" : fmt::format(" +- {:.3f}", gain.error);
-    const bool chance = std::abs(gain.mean) <= gain.error;
-    parts.push_back(
-        fmt::format("{:+.3f}{} nats over `{}`{}", gain.mean, error, other, chance ? ", within its error" : ""));
-  }
-  if (!forecast.c_filter.empty())
-    parts.push_back("in C `" + forecast.c_filter + "`" +
-                    (std::isnan(forecast.c_loss) ? "" : fmt::format(", {:+.3f}", -forecast.c_loss)));
-  return parts.empty() ? "" : fmt::format(" ({})", fmt::join(parts, "; "));
 }
 
 std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", steps, steps == 1 ? "" : "s"); }
@@ -197,8 +139,10 @@ std::string use_words(const Archive& archive) {
   const std::vector<NamedForecast> forecasts = named_forecasts(archive);
   std::string text = "to understand the motion: " + understanding(archive);
   for (const NamedForecast& forecast : forecasts) {
+    const std::string rmse =
+        forecast.rmse.size() > 0 ? fmt::format(" (RMSE {:.3g})", fmt::join(forecast.rmse, ", ")) : "";
     text += fmt::format("; {}{}: `--track.filter {}`{}", &forecast == &forecasts.front() ? "to predict " : "",
-                        steps_words(forecast.steps), forecast.filter, worth(archive, forecast));
+                        steps_words(forecast.steps), forecast.filter, rmse);
   }
   return text;
 }

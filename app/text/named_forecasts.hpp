@@ -1,5 +1,6 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <string>
 #include <vector>
 
@@ -7,16 +8,12 @@
 
 namespace modebank::app {
 
-/// The filter to use for predictions a number of steps ahead, and its gain on the judged runs.
+/// The filter to use for predictions a number of steps ahead.
 struct NamedForecast {
   Index steps = 1;
   std::string filter;
-  std::string other;             ///< filter to compare with: the bank; if the named filter is the bank, the best other
-                                 ///< filter
-  double gain = not_a_number;    ///< gain of log score over `other` [nats/sample]
-  double error = not_a_number;   ///< standard error over the runs; NaN for fewer than two runs
-  std::string c_filter;          ///< the best filter that can be exported to C; empty if this is `filter` itself
-  double c_loss = not_a_number;  ///< log score that c_filter loses against `filter` [nats/sample]
+  Eigen::VectorXd rmse;  ///< n_y, on the judged runs [state unit]; empty if unknown
+  std::string c_filter;  ///< the filter to export to C: the named one, or the best one that can be exported
 };
 
 /// One entry per scored horizon, horizon 1 first; empty without scores.
@@ -28,8 +25,7 @@ struct NamedForecast {
 std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
 /// One sentence on the finding and the named filters, such as: "to understand the motion: the 3 modes; to predict 1
-/// step ahead: `--track.filter combined` (+0.041 +- 0.012 nats over `drifting`; ...); 10 steps ahead: ...". Gains are
-/// over the finding's best competitor.
+/// step ahead: `--track.filter combined` (RMSE 0.0301); 10 steps ahead: ...".
 std::string use_words(const Archive& archive);
 
 }  // namespace modebank::app

@@ -85,7 +85,7 @@ std::string mean_words(const FirstScreen& screen) {
   for (const ErrorAhead& error : screen.errors)
     parts.push_back(
         (error.steps == 1 ? std::string("RMSE one step ahead ") : fmt::format("{} steps ahead ", error.steps)) +
-        error.bank_words + beside(error.other_words));
+        error.words + beside(error.other_words));
   if (screen.free_run_start > 0)
     parts.push_back(fmt::format("in free run from {} samples FIT {}{}", screen.free_run_start, fit_words(screen.fit),
                                 beside(screen.other_fit_words)));
@@ -100,18 +100,19 @@ std::string warning_words(const Archive& archive) {
                                             warnings.size(), warnings.front());
 }
 
-/// Sets the members that contain scores. Call it after the role and the competitor are set.
+/// Sets the members that contain scores. Call it after the role, the filter and the competitor are set.
 void add_scores(FirstScreen& screen, const Archive& archive) {
-  screen.errors = errors_ahead(archive, screen.role, screen.competitor);
-  if (const FreeRunRow* bank = free_run_of(archive, "bank", screen.role)) {
-    screen.free_run_start = bank->start;
-    screen.fit = bank->fit;
-    if (const FreeRunRow* other = free_run_of(archive, screen.competitor, screen.role))
-      screen.other_fit_words = fmt::format("{} {}", screen.competitor, fit_words(other->fit));
+  const std::string other = screen.filter == "bank" ? screen.competitor : "bank";
+  screen.errors = errors_ahead(archive, screen.role, screen.filter, other);
+  if (const FreeRunRow* own = free_run_of(archive, screen.filter, screen.role)) {
+    screen.free_run_start = own->start;
+    screen.fit = own->fit;
+    if (const FreeRunRow* beside = free_run_of(archive, other, screen.role))
+      screen.other_fit_words = fmt::format("{} {}", other, fit_words(beside->fit));
   }
   screen.mean = mean_words(screen);
   screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;
-  if (const DiagnosticsRow* row = diagnosis(archive, "bank", screen.role)) {
+  if (const DiagnosticsRow* row = diagnosis(archive, screen.filter, screen.role)) {
     screen.band = band_text(*row, screen.errors);
     screen.verdict_words = verdict_text(*row);
     screen.verdict = row->verdict;
@@ -147,8 +148,10 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   FirstScreen screen;
   screen.read = read_words(archive, settings);
   if (archive.structure) screen.structure = structure_sentence(*archive.structure, acted_on(archive));
+  const bool switches = archive.finding && archive.finding->answer == Answer::evidence;
   if (archive.baseline && archive.recording) {
-    if (const auto words = response_words(*archive.baseline, *archive.recording, time_unit(settings)); !words.empty())
+    if (const auto words = response_words(*archive.baseline, *archive.recording, time_unit(settings));
+        !words.empty() && !switches)
       screen.structure += (screen.structure.empty() ? "one linear model: " : "; ") + words.front();
     screen.point = operating_words(*archive.baseline, *archive.recording);
   }
@@ -158,6 +161,9 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   screen.use = use_words(archive);
   screen.forecasts = named_forecasts(archive);
   screen.role = judged_role(archive);
+  screen.filter = "bank";
+  for (const NamedForecast& forecast : screen.forecasts)
+    if (forecast.steps == 1 && pooled_row(archive, forecast.filter, screen.role)) screen.filter = forecast.filter;
   screen.gain = screen.gain_error = not_a_number;
   if (archive.finding) {
     const Finding& finding = *archive.finding;
@@ -169,7 +175,8 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   add_scores(screen, archive);
   if (archive.bank) {
     screen.mode_count = archive.bank->mode_count();
-    screen.modes = mode_table(archive, 0, time_unit(settings));
+    if (!archive.finding || archive.finding->better_description.empty() || screen.mode_count == 1)
+      screen.modes = mode_table(archive, 0, time_unit(settings));
   }
   return screen;
 }

@@ -30,6 +30,7 @@ struct FirstScreen {
   std::vector<NamedForecast> forecasts;  ///< the filters to predict with, with their numbers
   bool inputs_ahead = false;             ///< whether the inputs' stamps are late
   Role role = Role::test;                ///< role of the runs on which the filters are judged
+  std::string filter;      ///< filter that `use` names one step ahead; band, errors and free runs are its own
   std::string competitor;  ///< competitor with the highest log score; the gain is over this competitor. Empty if there
                            ///< is none
   std::optional<Answer> answer;
@@ -37,14 +38,14 @@ struct FirstScreen {
   double coverage = 0.0, coverage_lower = 0.0, coverage_upper = 0.0;  ///< coverage of the 95 % band with its interval;
                                                                       ///< NaN if unknown
   Calibration verdict = Calibration::undecided;
-  std::string verdict_words;       ///< verdict on the band, and the number of samples; empty if the bank was not scored
+  std::string verdict_words;  ///< verdict on the band, and the number of samples; empty if the filter was not scored
   std::vector<ErrorAhead> errors;  ///< errors one step ahead and at the longest scored horizon
   Index free_run_start = 0;        ///< number of measured samples at the start of free runs; 0 if there are no free
                                    ///< runs
-  Eigen::VectorXd fit;             ///< n_y, FIT of the bank's free runs [%]
-  std::string other_fit_words;     ///< FIT of the best competitor's free runs, with the competitor's name
+  Eigen::VectorXd fit;             ///< n_y, FIT of the filter's free runs [%]
+  std::string other_fit_words;     ///< FIT of another filter's free runs, with its name: the bank's or the competitor's
   Index mode_count = 0;
-  ModeTable modes;  ///< empty if the bank was not scored
+  ModeTable modes;  ///< empty if the bank was not scored, or if the finding describes the runs without modes
 };
 FirstScreen make_first_screen(const Archive& archive, const Settings& settings);
 

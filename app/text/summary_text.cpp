@@ -153,9 +153,10 @@ std::string data_text(const Recording& recording) {
     return std::count_if(recording.runs.begin(), recording.runs.end(),
                          [role](const Trajectory& t) { return t.role == role; });
   };
-  return fmt::format("data      {} training and {} held-out runs, {} and {} steps, sample period {:.4g} s\n",
-                     count(Role::train), count(Role::test), recording.transitions(Role::train),
-                     recording.transitions(Role::test), recording.median_period_s());
+  return fmt::format("data      {} training and {} held-out {}, {} and {} steps, sample period {:.4g} s\n",
+                     count(Role::train), count(Role::test), noun_of_runs(2, are_stretches(recording)),
+                     recording.transitions(Role::train), recording.transitions(Role::test),
+                     recording.median_period_s());
 }
 
 std::string summary_text(const Archive& archive, const std::string& unit, int width) {

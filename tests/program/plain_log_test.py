@@ -71,6 +71,14 @@ class PlainLogs(ProgramTest):
         np.testing.assert_allclose(single["R"], 0.01, rtol=0.25)
         self.assertNotIn("doubt", self.told)
 
+    def test_a_held_input_that_acts_at_once_is_no_doubt_but_one_that_rests_is(self):
+        for run in range(RUNS):
+            draw = np.random.default_rng(50 + run)
+            u = held(draw, SAMPLES, 10, 60, [0, 1])
+            self.write(run, 0.1, "time,speed,motor_v,valve_v", plant(draw, u, 20, 2, 0, 0, (0.02, 0.05)), u, 0 * u)
+        self.learned("--data.input", "motor_v, valve_v")
+        self.assertEqual(re.findall(r"doubt (\S+)", self.told), ["valve_v"])
+
     def test_a_level_that_wanders_is_taken_in_differences(self):
         levels = []
         for run in range(RUNS):

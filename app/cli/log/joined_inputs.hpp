@@ -19,7 +19,7 @@ void remove_input(Recording& recording, Index input);
 void leave_out_joined_inputs(const std::filesystem::path& file, const std::filesystem::path& archive,
                              const std::string& typed, bool stated, Proposal& proposal);
 
-/// What the training runs of stated inputs cannot tell apart, one sentence for each.
+/// Inputs that never move in the training runs, and what these cannot tell apart, one sentence for each.
 std::vector<std::string> joined_doubts(const Recording& recording);
 
 }  // namespace modebank::app

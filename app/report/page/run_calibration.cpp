@@ -34,33 +34,17 @@ json gain_card(const FirstScreen& screen) {
   return card("gain", "Gain over " + screen.competitor, gain, "nats per sample", known);
 }
 
-/// Answers the first question of users: can I rely on the band? Scores of training runs cannot answer it.
-std::string use_words(const FirstScreen& screen) {
-  const bool held_out = screen.role == Role::test;
-  switch (screen.verdict) {
-    case Calibration::calibrated:
-      return held_out ? "use it" : "nothing was held out";
-    case Calibration::overconfident:
-      return "do not rely on it";
-    case Calibration::underconfident:
-      return held_out ? "usable, but wider than necessary" : "nothing was held out";
-    case Calibration::undecided:
-      break;
-  }
-  return "cannot tell yet";
-}
-
 json coverage_card(const FirstScreen& screen) {
   if (std::isnan(screen.coverage)) return nullptr;
   return card("coverage", "In the 95 % band", number(screen.coverage, fmt::format("{:.1f} %", 100 * screen.coverage)),
               fmt::format("[{:.1f}, {:.1f}]", 100 * screen.coverage_lower, 100 * screen.coverage_upper),
-              fmt::format("{}: {}", use_words(screen), screen.verdict_words));
+              screen.verdict_words);
 }
 
 json error_card(const ErrorAhead& error) {
   const std::string name = error.steps == 1 ? "RMSE one step ahead" : fmt::format("RMSE {} steps ahead", error.steps);
-  json big = number_list(error.bank);
-  big["t"] = error.bank_words;
+  json big = number_list(error.rmse);
+  big["t"] = error.words;
   return card("error", name, big, "", competitor_words(error.other_words));
 }
 

@@ -84,7 +84,6 @@ TEST(ModeDynamics, LaggedModelsGainIsThatOfTheirSums) {
 TEST(ModeDynamics, IntegratorsDeadBeatAndGrowth) {
   const ModeDynamics integrator = mode_dynamics(bank_of({1, 1}, vector({0.0, 0.2}), 0.1), 0);
   EXPECT_EQ(integrator.decays[0].time_constant_s, std::numeric_limits<double>::infinity());
-  EXPECT_TRUE(std::isnan(integrator.gain(0, 0)));
   EXPECT_EQ(mode_dynamics(bank_of({1, 1}, vector({-1.0, 0.2}), 0.1), 0).decays[0].time_constant_s, 0.0);
   EXPECT_NEAR(mode_dynamics(bank_of({1, 1}, vector({std::expm1(0.1), 0.2}), 0.1), 0).decays[0].time_constant_s, -1.0,
               dynamics_rounding);
@@ -112,6 +111,11 @@ TEST(ModeDynamics, StandardErrorsAreTheDeltaMethods) {
   EXPECT_NEAR(apart.gain_error(0, 0), error_of_gain(covariance.diagonal().asDiagonal()), rounding);
   mode.parameter_covariance = 25.0 * covariance;  // covariance over windows, which is larger than that of their mean
   EXPECT_NEAR(mode_dynamics(bank, 0).gain_error(0, 0), error_of_gain(covariance), rounding);
+  add_responses(bank);
+  EXPECT_NEAR(mode.response.value.gain(0, 0), -B / A, rounding);
+  const double crossed = (0.6 - std::exp(-1.0)) / (0.6 - 0.36);  // between samples 1 and 2, where 0.6 and 0.36 are left
+  EXPECT_NEAR(mode.response.value.response_s(0, 0), (1.0 + crossed) * dt, rounding);
+  EXPECT_NEAR(mode.response.error.gain(0, 0), error_of_gain(covariance), 0.3 * error_of_gain(covariance));
 }
 
 /// The eigenvalues of a rotation have modulus sqrt(det(I + A)) for any angle. s has no error here, so only c matters.

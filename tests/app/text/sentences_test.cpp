@@ -9,6 +9,7 @@
 
 #include "app/text/calibration_text.hpp"
 #include "app/text/finding_text.hpp"
+#include "app/text/response_text.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank::test {
@@ -61,6 +62,27 @@ TEST(Sentences, OnTheBandMeanWhatItsRowSays) {
     EXPECT_EQ(has(row.flags, "too few samples"), has(text, "too few independent samples")) << row.flags;
   }
   for (const int count : verdicts) EXPECT_GT(count, 10);
+}
+
+/// An oscillator of damping 0.4 exceeds the end of a step by exp(-pi 0.4 / sqrt(1 - 0.4^2)) = 25 %, which an input that
+/// creeps does not show. A gain of 0.1 +- 0.1 is no value, only a limit of 0.3.
+TEST(Sentences, OnAStepTellWhatTheLogShows) {
+  const double omega = 0.1, damping = 0.4, angle = omega * std::sqrt(1.0 - damping * damping);
+  const double a1 = 2.0 * std::exp(-damping * omega) * std::cos(angle), a2 = -std::exp(-2.0 * damping * omega);
+  const auto words = [&](double gain, double error, double rise) {
+    const Eigen::Vector3d scale(0.0, 0.0, 1.0 - a1 - a2), theta = gain * scale + Eigen::Vector3d(a1 - 1.0, a2, 0.0);
+    Bank bank = one_mode_bank({1, 1, false, 2}, theta, Eigen::VectorXd::Ones(1));
+    bank.modes.front().response =
+        step_response(bank.structure, theta, (error * scale).cwiseAbs2().asDiagonal(), {1}, 1.0);
+    Trajectory run;
+    run.time_s = Eigen::VectorXd::LinSpaced(401, 0.0, 400.0);
+    run.input = ((run.time_s.array() - 200.0) / rise).cwiseMin(1.0).cwiseMax(0.0).matrix().transpose();
+    run.state = run.input;
+    return app::response_words(bank, {{{"y", "m"}}, {{"u", "V"}}, {run}}, "s").front();
+  };
+  EXPECT_TRUE(std::regex_search(words(2.0, 1e-3, 0.5), std::regex(", within 5 % after .*, overshoot 25 %")));
+  EXPECT_FALSE(has(words(2.0, 1e-3, 100.0), "5 %")) << words(2.0, 1e-3, 100.0);
+  EXPECT_NEAR(std::stod(words(0.1, 0.1, 0.5).substr(std::string("y per u: less than ").size())), 0.3, 0.06);
 }
 
 /// Scores of the bank and its competitors. Each run has a random level and a few outliers.
