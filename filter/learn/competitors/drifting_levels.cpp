@@ -69,13 +69,13 @@ class Climb {
   Climb(const Bank& frame, const Training& training) : frame_(frame), training_(training), grids_(grids()) {}
 
   void from(Point at) {
-    constexpr double least_gain = 1e-5;  // [nats/sample]
+    constexpr double least_climb = 1e-5;  // [nats/sample]
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t setting = 0; setting < at.size(); ++setting) {
         Point trial = at;
         for (trial[setting] = 0; trial[setting] < grids_[setting].size(); ++trial[setting])
-          if (score(trial) > score(at) + least_gain) {
+          if (score(trial) > score(at) + least_climb) {
             at = trial;
             moved = true;
           }
