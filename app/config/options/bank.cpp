@@ -49,8 +49,8 @@ std::vector<Option> bank_options() {
                  competitors),
       words("bank.noise_by_input",
             "a factor of 0.2 to 5 on all process noise, as a function of state and input. auto uses it where training "
-            "runs left out gain. It is not tried with rounded samples, a given R, "
-            " bank.transition = logit, bank.look_ahead above 1, or without em",
+            "runs left out gain. It is not tried with rounded samples, a given R, bank.transition = "
+            "logit, bank.look_ahead above 1, or without em",
             MODEBANK_FIELD(noise_by_input))
           .touch("none, for a bank that is exported to C, or when you want an estimate of R", competitors),
       words("bank.transition",

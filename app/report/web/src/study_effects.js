@@ -1,11 +1,34 @@
 // Main effects of a study: scores for each value of each varied key.
 import {figure} from './chart.js';
-import {controls, h} from './elements.js';
+import {choice, controls, h} from './elements.js';
 import {palette} from './look.js';
+import {plainValue} from './ordering.js';
 import {section} from './page.js';
+import {columnTitle} from './score_names.js';
 import {bestCell, bestSetting, levelOf, reached, settingsOf} from './settings.js';
 import {isNumber} from './statistics.js';
-import {axisOf, namesOf, scoreChoice} from './study_axes.js';
+
+// Values of a column over the study. They are increasing numbers if all values are numbers, else they have the study's
+// order.
+function axisOf(study, name) {
+  const i = study.columns.findIndex((column) => column.name === name);
+  const of = (row) => plainValue(row.cells[i]);
+  const numeric = study.rows.every((row) => of(row) === null || isNumber(of(row)));
+  const levels = [...new Set(study.rows.map(of).filter((v) => v !== null))];
+  if (numeric) levels.sort((a, b) => a - b);
+  const position = new Map(levels.map((level, k) => [level, k]));
+  const {goal} = study.columns[i];
+  return {name, of, numeric, levels, position, goal, label: columnTitle(name)};
+}
+
+// Names of the columns of one kind (varied, score or cost).
+const namesOf = (study, kind) => study.columns.filter((column) => column.kind === kind).map(({name}) => name);
+const positionOf = (list, wanted) => Math.max(0, list.indexOf(wanted));
+
+function scoreChoice(study, begin, onchange) {
+  const scores = namesOf(study, 'score');
+  return choice('Score', scores.map(columnTitle), positionOf(scores, begin), (i) => onchange(scores[i]));
+}
 
 const spread = 0.16;  // width over which the runs of a level are scattered, relative to the width of the level
 
