@@ -4,8 +4,8 @@
 #include <spdlog/spdlog.h>
 
 #include "app/chain/provenance.hpp"
+#include "app/config/config_file.hpp"
 #include "app/study/answers/answers_text.hpp"
-#include "app/study/answers/best_runs.hpp"
 #include "app/study/answers/merge_study.hpp"
 #include "app/study/answers/study_text.hpp"
 #include "app/study/launch/submit_study.hpp"
@@ -16,6 +16,7 @@
 #include "io/archive/archive_form.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"
+#include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -111,6 +112,27 @@ void require_plan(const StudyCommand& command) {
   if (!has_plan(command.store.folder()))
     throw ConfigurationError(fmt::format("{}: the study has no plan yet; run the study, or --study.stage plan, first",
                                          plan_file(command.store.folder()).string()));
+}
+
+/// Configuration of the best setting by one score, ready for `modebank run`, with a comment that explains it.
+std::string best_run_text(const Config& study, const StudyTable& table, const BestSetting& best) {
+  const TrialRow& row = table.rows[best.row];
+  Config config = trial_config(study, table.varied_keys, row);
+  config.archive.output.clear();  // the trial's path belongs to the study's folder
+  std::string text =
+      fmt::format("# Best of a study by {} ({} is better): {:.6g}", best.score, best.goal.text(), best.value);
+  if (best.repeats > 1) text += fmt::format(", mean of {} repeats; the seed is that of the first", best.repeats);
+  text += fmt::format("\n# {}\n# trial {}\n", setting_text(table, best.row), row.key);
+  if (best.score.find("_test_") != std::string::npos)
+    text += "# It was chosen by the held-out runs, so their scores are too good. Judge it on other runs.\n";
+  return text + "\n" + resolved_text(config);
+}
+
+/// Writes study.best.ini, the setting that is best by the headline, into the study's folder.
+void write_best_run(const std::filesystem::path& folder, const Config& study, const StudyTable& table,
+                    const Answers& answers) {
+  for (const BestSetting& best : answers.best)
+    if (best.score == answers.headline) replace_file(folder / "study.best.ini", {best_run_text(study, table, best)});
 }
 
 int merge(const StudyCommand& command, const std::set<std::string>& whole) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
 #include <cmath>
+#include <set>
 
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
@@ -15,21 +16,6 @@
 
 namespace modebank::app {
 namespace {
-
-const HorizonRow* horizon_row(const Archive& archive, const std::string& filter, Role role, Index horizon) {
-  const auto found = std::find_if(archive.horizons.begin(), archive.horizons.end(), [&](const HorizonRow& row) {
-    return row.filter == filter && row.role == role && row.run == "*" && row.horizon == horizon;
-  });
-  return found == archive.horizons.end() ? nullptr : &*found;
-}
-
-const HorizonRow* longest_horizon(const Archive& archive, const std::string& filter, Role role) {
-  const HorizonRow* longest = nullptr;
-  for (const HorizonRow& row : archive.horizons)
-    if (row.filter == filter && row.role == role && row.run == "*" && row.horizon > (longest ? longest->horizon : 1))
-      longest = &row;
-  return longest;
-}
 
 /// For each state, the standard deviation of the judged measurements; NaN without measurements. Only samples that can
 /// be predicted `steps` steps ahead count.
@@ -71,16 +57,16 @@ std::string error_words(const ErrorAhead& error, const std::vector<Channel>& sta
 /// Text such as "0.0301", or "0.0301, 0.2" with two states.
 std::string digits(const Eigen::VectorXd& values) { return fmt::format("{:.3g}", fmt::join(values, ", ")); }
 
-/// A filter's error some steps ahead, and the errors of others. `row_of` returns the scores of a filter, or null.
-template <class RowOf>
-void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, const std::string& filter,
-               const std::string& other, std::vector<ErrorAhead>& errors) {
-  if (!row_of(filter)) return;
-  const auto rmse_of = [&](const std::string& name) { return row_of(name) ? row_of(name)->rmse : Eigen::VectorXd(); };
+ErrorAhead error_ahead(const Archive& archive, Role role, const std::string& filter, const std::string& other,
+                       Index steps, const ScoresAhead& own) {
+  const auto rmse_of = [&](const std::string& name) {
+    const auto scores = scores_ahead(archive, name, role, steps);
+    return scores ? scores->rmse : Eigen::VectorXd();
+  };
   ErrorAhead error;
   error.steps = steps;
-  error.rmse = rmse_of(filter);
-  error.coverage_95 = row_of(filter)->coverage_95;
+  error.rmse = own.rmse;
+  error.coverage_95 = own.coverage_95;
   error.combined = rmse_of(combined_name);
   error.fit_percent = fit_percent(error.rmse, standard_deviation_of_measurements(archive, role, steps));
   error.words = error_words(error, archive.recording ? archive.recording->states : std::vector<Channel>());
@@ -88,21 +74,20 @@ void add_error(Index steps, RowOf row_of, const Archive& archive, Role role, con
   for (const std::string& name : {other, std::string(combined_name)})
     if (name != filter && rmse_of(name).size() > 0) others.push_back(fmt::format("{} {}", name, digits(rmse_of(name))));
   error.other_words = boost::algorithm::join(others, ", ");
-  errors.push_back(error);
+  return error;
 }
 
 }  // namespace
 
 std::vector<ErrorAhead> errors_ahead(const Archive& archive, Role role, const std::string& filter,
                                      const std::string& other) {
+  Index longest = 1;
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == filter && row.role == role && row.run == "*") longest = std::max(longest, row.horizon);
   std::vector<ErrorAhead> errors;
-  add_error(
-      1, [&](const std::string& name) { return pooled_row(archive, name, role); }, archive, role, filter, other,
-      errors);
-  if (const HorizonRow* far = longest_horizon(archive, filter, role))
-    add_error(
-        far->horizon, [&](const std::string& name) { return horizon_row(archive, name, role, far->horizon); }, archive,
-        role, filter, other, errors);
+  for (const Index steps : std::set<Index>{1, longest})
+    if (const auto own = scores_ahead(archive, filter, role, steps))
+      errors.push_back(error_ahead(archive, role, filter, other, steps, *own));
   return errors;
 }
 

@@ -8,6 +8,15 @@ const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, 
   return modebank::pooled_row(archive.summary, filter, role);
 }
 
+std::optional<ScoresAhead> scores_ahead(const Archive& archive, const std::string& filter, Role role,
+                                        Eigen::Index steps) {
+  const auto of = [](const auto& row) { return ScoresAhead{row.log_score, row.rmse, row.coverage_95}; };
+  if (const SummaryRow* row = steps == 1 ? pooled_row(archive, filter, role) : nullptr) return of(*row);
+  for (const HorizonRow& row : archive.horizons)
+    if (row.filter == filter && row.role == role && row.run == "*" && row.horizon == steps) return of(row);
+  return {};
+}
+
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode) {
   for (const DiagnosticsRow& row : archive.diagnostics)
     if (row.filter == filter && row.role == role && row.mode == mode) return &row;

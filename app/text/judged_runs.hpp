@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "filter/learn/chain/progress.hpp"
@@ -9,6 +10,15 @@ namespace modebank {
 
 /// A filter's row of the summary for all runs of a role; null if there is none.
 const SummaryRow* pooled_row(const Archive& archive, const std::string& filter, Role role);
+
+struct ScoresAhead {
+  double log_score = 0.0;  ///< [nats/sample]
+  Eigen::VectorXd rmse;    ///< n_y [state unit]
+  double coverage_95 = 0.0;
+};
+/// Scores of a filter some steps ahead, for all runs of a role.
+std::optional<ScoresAhead> scores_ahead(const Archive& archive, const std::string& filter, Role role,
+                                        Eigen::Index steps);
 
 /// The row of one mode of a filter for all runs of a role; null if there is none. Mode -1 means the whole filter.
 const DiagnosticsRow* diagnosis(const Archive& archive, const std::string& filter, Role role, Eigen::Index mode = -1);

@@ -65,22 +65,11 @@ const Reached* simplest_good(const std::vector<Reached>& all, May may) {
   return nullptr;
 }
 
-/// Scores of a filter on the judged runs; NaN and empty if there are none.
-struct Judged {
-  double log_score = not_a_number;
-  Eigen::VectorXd rmse = {};
-};
-
-Judged judged(const Archive& archive, const std::string& filter, Index steps) {
-  Judged found;
-  const auto look = [&](const auto& rows) {
-    for (const auto& row : rows)
-      if (row.filter == filter && row.role == judged_role(archive) && row.run == "*" && horizon_of(row) == steps)
-        found = {row.log_score, row.rmse};
-  };
-  look(archive.horizons);
-  if (steps == 1) look(archive.summary);
-  return found;
+/// Gain of a filter over another on the judged runs; NaN if unknown.
+double judged_gain(const Archive& archive, const std::string& filter, const std::string& other, Index steps) {
+  const Role role = judged_role(archive);
+  const auto a = scores_ahead(archive, filter, role, steps), b = scores_ahead(archive, other, role, steps);
+  return a && b ? a->log_score - b->log_score : not_a_number;
 }
 
 /// The filter to name at a horizon; null without filters. Nothing is named against the simpler model of the finding, or
@@ -94,22 +83,22 @@ const Reached* best_of(const Archive& archive, const std::vector<Reached>& all, 
   for (const Reached& one : all)
     if (&one < good && one.filter == simpler &&
         ((steps == 1 && good->filter == "bank" && simpler == described) ||
-         judged(archive, good->filter, steps).log_score - judged(archive, simpler, steps).log_score < negligible_gain))
+         judged_gain(archive, good->filter, simpler, steps) < negligible_gain))
       return &one;
   return good;
 }
 
-/// Whether the C code of `export --to c` supports the filter.
 bool runs_in_c(const Archive& archive, const std::string& filter) {
   if (filter == combined_name) return false;
   const std::optional<Bank> bank = archive.bank_of(filter);
-  return bank && bank->terms.empty() && bank->noise_factor.empty() && !bank->is_quantised();
+  return bank && c_lacks(*bank).empty();
 }
 
 NamedForecast named(const Archive& archive, const std::vector<Reached>& all, const Reached& chosen, Index steps) {
   const Reached* in_c = simplest_good(all, [&](const std::string& name) { return runs_in_c(archive, name); });
   const bool itself = !in_c || runs_in_c(archive, chosen.filter);
-  return {steps, chosen.filter, judged(archive, chosen.filter, steps).rmse, itself ? chosen.filter : in_c->filter};
+  const auto scores = scores_ahead(archive, chosen.filter, judged_role(archive), steps);
+  return {steps, chosen.filter, scores ? scores->rmse : Eigen::VectorXd(), itself ? chosen.filter : in_c->filter};
 }
 
 std::string understanding(const Archive& archive) {
@@ -123,6 +112,14 @@ std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", ste
 
 }  // namespace
 
+std::string c_lacks(const Bank& bank) {
+  if (!bank.running_noise.empty()) return "coefficients that learn in every run";
+  if (!bank.terms.empty()) return "a motion that bends (window.terms)";
+  if (!bank.noise_factor.empty())
+    return "process noise that follows state and input (--bank.noise_by_input none learns a bank without it)";
+  return bank.is_quantised() ? "measurements in steps (data.quantum)" : "";
+}
+
 std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   std::set<Index> horizons{1};
   for (const HorizonRow& row : archive.horizons) horizons.insert(row.horizon);
@@ -134,9 +131,8 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive) {
   return forecasts;
 }
 
-std::string use_words(const Archive& archive) {
+std::string use_words(const Archive& archive, const std::vector<NamedForecast>& forecasts) {
   if (!archive.finding || !archive.bank) return "";
-  const std::vector<NamedForecast> forecasts = named_forecasts(archive);
   std::string text = "to understand the motion: " + understanding(archive);
   for (const NamedForecast& forecast : forecasts) {
     const std::string rmse =

@@ -16,6 +16,9 @@ struct NamedForecast {
   std::string c_filter;  ///< the filter to export to C: the named one, or the best one that can be exported
 };
 
+/// What the C code of `export --to c` does not support of a bank; empty if it supports all.
+std::string c_lacks(const Bank& bank);
+
 /// One entry per scored horizon, horizon 1 first; empty without scores.
 /// - Only training runs decide. Their predictions come from filters that were learned without them (/bank/left_out). If
 ///   no runs were left out, they come from the archive's filters.
@@ -26,6 +29,6 @@ std::vector<NamedForecast> named_forecasts(const Archive& archive);
 
 /// One sentence on the finding and the named filters, such as: "to understand the motion: the 3 modes; to predict 1
 /// step ahead: `--track.filter combined` (RMSE 0.0301); 10 steps ahead: ...".
-std::string use_words(const Archive& archive);
+std::string use_words(const Archive& archive, const std::vector<NamedForecast>& forecasts);
 
 }  // namespace modebank::app

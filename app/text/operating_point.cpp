@@ -80,8 +80,9 @@ std::string operating_words(const Bank& single, const Recording& recording) {
   for (Index c = 0; c < n + m; ++c) means.push_back(named(column(recording, c), all.mean(c)));
   std::string text = fmt::format("means: {}", fmt::join(means, ", "));
   const auto& [value, error, never_settles] = single.modes.front().response;
-  const bool settles = value.radius + (std::isfinite(error.radius) ? 2.0 * error.radius : 0.0) < 1.0;
-  const bool within = m > 0 && all.low.tail(m).maxCoeff() <= 0.0 && all.high.tail(m).minCoeff() >= 0.0;
+  if (value.radius.size() == 0) return text;
+  const bool settles = value.radius(0) + (std::isfinite(error.radius(0)) ? 2.0 * error.radius(0) : 0.0) < 1.0;
+  const bool within = all.low.tail(m).maxCoeff() <= 0.0 && all.high.tail(m).minCoeff() >= 0.0;
   if (!single.structure.intercept || !settles || !within) return text;
   const LinearModel& model = single.modes.front().model;
   const VectorXd rest = PivotedLu(-model.A).solve(model.c);

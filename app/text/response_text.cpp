@@ -10,6 +10,7 @@
 
 #include "app/text/number_text.hpp"
 #include "app/text/operating_point.hpp"
+#include "io/archive/bank/units.hpp"
 
 namespace modebank::app {
 namespace {
@@ -37,10 +38,10 @@ std::vector<Pair> pairs_of(const Bank& single, const Recording& recording) {
   return pairs;
 }
 
-/// " K/W"; the unit of the state alone where the input has none.
+/// " K/W"; empty where a unit is unknown, or both are equal.
 std::string unit_of_gain(const Channel& state, const Channel& input) {
-  if (state.unit.empty() || state.unit == input.unit) return "";
-  return input.unit.empty() ? " " + state.unit : fmt::format(" {}/{}", state.unit, input.unit);
+  const std::string unit = unit_ratio(state.unit, input.unit);
+  return unit.empty() || unit == "1" ? "" : " " + unit;
 }
 
 /// Coefficients of 1, q^-1, ... in A(q) x = B(q) u, for one state and one input. A model of differences has a factor
@@ -113,7 +114,7 @@ std::string settled_words(const EstimatedStepResponse& response, const Recording
   const auto [i, j, effect] = pair;
   const auto& [value, error, share] = response;
   const double gain = value.gain(i, j), off = error.gain(i, j), time_s = value.response_s(i, j);
-  if (!tells(gain, off)) return fmt::format("less than {:.2g}{} in the end", std::abs(gain) + 2.0 * off, unit_of_gain);
+  if (!tells(gain, off)) return fmt::format("within +-{:.2g}{} in the end", std::abs(gain) + 2.0 * off, unit_of_gain);
   std::string text = estimate_text(gain, off) + unit_of_gain;
   if (!tells(time_s, error.response_s(i, j))) return text + " in the end";
   text = fmt::format("63 % of {} after {} {}", text, estimate_text(time_s, error.response_s(i, j)), unit);
@@ -130,7 +131,8 @@ std::string words_of(const Bank& single, const Recording& recording, const Pair&
   const auto [i, j, effect] = pair;
   const Channel& state = recording.states[static_cast<std::size_t>(i)];
   const Channel& input = recording.inputs[static_cast<std::size_t>(j)];
-  const double radius = response.value.radius, off = response.error.radius, share = response.never_settles;
+  const double radius = response.value.radius(i, j), off = response.error.radius(i, j);
+  const double share = response.never_settles(i, j);
   const double reach = std::isfinite(off) ? 2.0 * off : 0.0;
   const std::string name = fmt::format("{} per {}: ", state.name, input.name);
   const std::string never = share > 0.05 ? fmt::format(", {:.0f} % of the draws never settle", 100.0 * share) : "";
@@ -138,14 +140,14 @@ std::string words_of(const Bank& single, const Recording& recording, const Pair&
     return name + settled_words(response, recording, pair, unit_of_gain(state, input), unit) + never;
   const double least = radius - reach;
   const std::string slower = least > 0.0 && least < 1.0
-                                 ? fmt::format("slower than {:.2g} {}", -single.dt_s / std::log(least), unit)
-                                 : std::string("not within the runs");
-  if (radius + reach < 1.0) return name + "settles " + slower + never;
+                                 ? fmt::format("settles slower than {:.2g} {}", -single.dt_s / std::log(least), unit)
+                                 : std::string("does not settle within the runs");
+  if (radius + reach < 1.0) return name + slower + never;
   const auto [slope, after_s] = ramp(single, j);
   std::string rate;
   if (std::isfinite(slope)) rate = fmt::format(" {:.3g}{} per {}", slope, unit_of_gain(state, input), unit);
   if (after_s > single.dt_s / 2.0) rate += fmt::format(" after {:.2g} {}", after_s, unit);
-  return name + "integrates" + rate + ", or settles " + slower + never;
+  return name + "integrates" + rate + ", or " + slower + never;
 }
 
 }  // namespace

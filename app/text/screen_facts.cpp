@@ -158,8 +158,8 @@ FirstScreen make_first_screen(const Archive& archive, const Settings& settings) 
   screen.doubt = level_doubt(archive);
   screen.inputs_ahead = input_lag(archive, settings) < 0.0;
   screen.warning = warning_words(archive);
-  screen.use = use_words(archive);
   screen.forecasts = named_forecasts(archive);
+  screen.use = use_words(archive, screen.forecasts);
   screen.role = judged_role(archive);
   screen.filter = "bank";
   for (const NamedForecast& forecast : screen.forecasts)

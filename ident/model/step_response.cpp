@@ -23,7 +23,7 @@ constexpr Index draws = 200, most_steps = 4000, fine_steps = 500, coarser_after 
 const double reached = std::exp(-1.0);
 
 constexpr MatrixXd StepResponse::*numbers[] = {&StepResponse::response_s, &StepResponse::settling_s,
-                                               &StepResponse::gain, &StepResponse::overshoot};
+                                               &StepResponse::gain, &StepResponse::overshoot, &StepResponse::radius};
 
 /// Follows the distance to the steady value, as a share of it, from `before` at `time` to `now` a stride later.
 void note_crossings(StepResponse& found, Index i, Index j, double time_s, double stride_s, double before, double now) {
@@ -42,7 +42,7 @@ void simulate(StepResponse& found, const LinearStructure& s, const LinearModel& 
   MatrixXd M = model.full_form(), distance = -found.gain.replicate(s.state_lags, 1);
   MatrixXd next(distance.rows(), distance.cols());
   const double order = static_cast<double>(s.dimension()), start = order + static_cast<double>(s.input_lags);
-  const double longest = start + (12.0 + 2.0 * order) / -std::log(found.radius);
+  const double longest = start + (12.0 + 2.0 * order) / -std::log(found.radius(0));
   double samples = 0.0, stride = 1.0;
   for (Index k = 0; k < most_steps && samples < longest; ++k, samples += stride) {
     if (k >= std::max(fine_steps, s.input_lags) && k % coarser_after == 0) M *= MatrixXd(M), stride *= 2.0;
@@ -59,12 +59,11 @@ void simulate(StepResponse& found, const LinearStructure& s, const LinearModel& 
 }
 
 /// Half the range of a number over the draws; infinite if its upper end lies among draws that have no such number.
-template <class Number>
-double half_range(const std::vector<StepResponse>& drawn, Number number) {
+double half_range(const std::vector<StepResponse>& drawn, MatrixXd StepResponse::*number, Index e) {
   std::vector<double> values;
   for (const StepResponse& one : drawn)
-    if (const double value = number(one); !std::isnan(value)) values.push_back(value);
-  if (static_cast<double>(values.size()) < (1.0 - tail) * static_cast<double>(draws)) return INFINITY;
+    if (const double value = (one.*number)(e); !std::isnan(value)) values.push_back(value);
+  if (static_cast<double>(values.size()) < (1.0 - tail) * draws) return INFINITY;
   std::ranges::sort(values);
   return (sample_quantile(values, 1.0 - tail) - sample_quantile(values, tail)) / 2.0;
 }
@@ -73,8 +72,8 @@ StepResponse response(const LinearStructure& s, const VectorXd& theta, const std
   StepResponse found;
   for (const auto number : numbers) (found.*number).setConstant(s.states, s.inputs, not_a_number);
   const LinearModel model = unpack(s, theta);
-  found.radius = eigenvalues(model.full_form()).cwiseAbs().maxCoeff();
-  if (!(found.radius < unit_circle)) return found;
+  found.radius.fill(eigenvalues(model.full_form()).cwiseAbs().maxCoeff());
+  if (!(found.radius(0) < unit_circle)) return found;
   MatrixXd held = MatrixXd::Zero(s.dimension(), s.inputs);
   for (Index first = 0; first < s.acting_inputs(); first += s.inputs) held += model.B.middleCols(first, s.inputs);
   found.gain = PivotedLu(-model.A).solve(held).topRows(s.states);
@@ -87,7 +86,8 @@ StepResponse response(const LinearStructure& s, const VectorXd& theta, const std
 
 EstimatedStepResponse step_response(const LinearStructure& s, const VectorXd& theta, const MatrixXd& covariance,
                                     const std::vector<Index>& delay, double dt_s) {
-  EstimatedStepResponse result{response(s, theta, delay, dt_s), {}};
+  EstimatedStepResponse result{
+      response(s, theta, delay, dt_s), {}, MatrixXd::Constant(s.states, s.inputs, not_a_number)};
   for (const auto number : numbers) (result.error.*number).setConstant(s.states, s.inputs, not_a_number);
   if (covariance.rows() != theta.size() || !covariance.allFinite()) return result;
   auto generator = make_generator(0, "step response");
@@ -98,12 +98,10 @@ EstimatedStepResponse step_response(const LinearStructure& s, const VectorXd& th
     const VectorXd z = VectorXd::NullaryExpr(root.cols(), [&](Index) { return normal(generator); });
     one = response(s, theta + root * z, delay, dt_s);
   }
-  result.never_settles = 0.0;
-  for (const StepResponse& one : drawn) result.never_settles += one.radius < unit_circle ? 0.0 : 1.0 / draws;
-  result.error.radius = half_range(drawn, [](const StepResponse& one) { return one.radius; });
+  result.never_settles.setZero();
+  for (const StepResponse& one : drawn) result.never_settles.array() += one.radius(0) < unit_circle ? 0.0 : 1.0 / draws;
   for (const auto number : numbers)
-    for (Index e = 0; e < s.states * s.inputs; ++e)
-      (result.error.*number)(e) = half_range(drawn, [&](const StepResponse& one) { return (one.*number)(e); });
+    for (Index e = 0; e < s.states * s.inputs; ++e) (result.error.*number)(e) = half_range(drawn, number, e);
   return result;
 }
 

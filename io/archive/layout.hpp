@@ -189,7 +189,7 @@ void exchange_archive(Io& io, A& archive) {
     member.attribute("measured_fit", archive.measured_fit);
     member.attribute_unless(Index{0}, "learned_transitions", archive.learned_transitions, rule::not_negative);
     member.optional_attribute_texts("mode_names", archive.mode_names);
-    if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.modes.size()); });
+    if constexpr (Io::reads) member.finish([&] { check_count("mode_names", archive.mode_names, part.mode_count()); });
     exchange_part(member, "unrefined", archive.unrefined, {}, exchange_one);
     exchange_left_out(member, archive.left_out, units.states());
   });

@@ -150,7 +150,7 @@ void check_mixture(const MixtureResult& result) {
   const double sum = mixture.weights.sum() + mixture.noise.weight;
   if (mixture.components() > 0 && !(std::abs(sum - 1.0) <= sum_tolerance))
     throw DataError("the weights sum to " + std::to_string(sum) + ", must be 1");
-  check_count("feature_names", result.feature_names, static_cast<std::size_t>(mixture.features()));
+  check_count("feature_names", result.feature_names, mixture.features());
   if (mixture.noise.lower.size() != mixture.noise.upper.size()) throw DataError("the box of the noise has one corner");
   if ((mixture.noise.lower.array() > mixture.noise.upper.array()).any())
     throw DataError("the lower corner of the noise's box lies above the upper one");

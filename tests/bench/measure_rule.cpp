@@ -136,10 +136,6 @@ std::vector<Question> questions() {
   const Motion border = [](Step& at, double size, const Draw& normal, const Draw&) {
     return 0.8 * at.x + (at.x > 0.0 ? 0.3 + size : 0.3 - size) * at.u + sd * normal();
   };
-  const Motion wandering = [](Step& at, double size, const Draw& normal, const Draw&) {
-    at.memory = 0.99 * at.memory + 0.14 * normal();
-    return 0.8 * at.x + (0.3 + size * at.memory) * at.u + sd * normal();
-  };
   const Motion hidden = [](Step& at, double size, const Draw& normal, const Draw&) {
     at.memory = 0.97 * at.memory + 0.24 * normal();
     return 0.5 * at.x + 0.3 * at.u + size * at.memory + sd * normal();

@@ -69,6 +69,7 @@ class PlainLogs(ProgramTest):
         self.near(single, "steady_gain", 0.8)
         self.near(single, "response_time_s", response_time(60, 3, 1))
         np.testing.assert_allclose(single["R"], 0.01, rtol=0.25)
+        self.assertIn("temperature_c per heater_w: 63 % of", modebank("show", "out.h5", cwd=self.folder).stdout)
         self.assertNotIn("doubt", self.told)
 
     def test_a_held_input_that_acts_at_once_is_no_doubt_but_one_that_rests_is(self):

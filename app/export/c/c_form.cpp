@@ -8,6 +8,7 @@
 #include "app/export/c/templates.hpp"
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"
+#include "app/text/named_forecasts.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
@@ -19,10 +20,7 @@ void refuse_what_c_lacks(const ExportedBank& exported) {
     throw DataError(fmt::format("{} cannot be exported to C: {}", exported.archive, what));
   };
   if (exported.options.variant == FilterVariant::salvi2025) refuse("filter.variant = salvi2025");
-  if (!exported.bank.terms.empty()) refuse("a motion that bends (window.terms)");
-  if (!exported.bank.noise_factor.empty())
-    refuse("process noise that follows state and input (--bank.noise_by_input none learns a bank without it)");
-  if (exported.bank.is_quantised()) refuse("measurements in steps (data.quantum)");
+  if (const std::string part = c_lacks(exported.bank); !part.empty()) refuse(part);
 }
 
 std::string lag_text(double lag_s) {

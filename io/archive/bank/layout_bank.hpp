@@ -96,6 +96,8 @@ void exchange_terms(Io& io, S& stored) {
 /// - response_time_s: time to 63 % of that end, dead time included
 /// - settling_time_s: time after which the state stays within 5 % of that end
 /// - overshoot: by how much the peak exceeds that end, as a share of it
+/// - largest_pole: largest modulus of the poles of that response, for all its pairs
+/// - never_settles: share of the draws behind the errors of the response that have a pole beyond 1
 /// - parameter_covariance: covariance of theta among the mode's windows
 /// - C: y = C x
 /// - R: measurement noise covariance
@@ -138,6 +140,9 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.optional_field("settling_time_s_standard_error", stored.settling_time_error_s, over_inputs, {"s"});
   io.optional_field("overshoot", stored.overshoot, over_inputs);
   io.optional_field("overshoot_standard_error", stored.overshoot_error, over_inputs);
+  io.optional_field("largest_pole", stored.largest_pole, over_inputs);
+  io.optional_field("largest_pole_standard_error", stored.largest_pole_error, over_inputs);
+  io.optional_field("never_settles", stored.never_settles, over_inputs);
   io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
@@ -181,8 +186,8 @@ void exchange_bank(Io& io, B& bank, const Units& units) {
       [&](auto& stored) { exchange_modes(io, stored, states, inputs, unit_of(bank.motion_parameters)); });
   if constexpr (Io::reads)
     io.finish([&] {
-      check_count("state_names", bank.state_names, static_cast<std::size_t>(bank.structure.dimension()));
-      check_count("input_names", bank.input_names, static_cast<std::size_t>(bank.structure.acting_inputs()));
+      check_count("state_names", bank.state_names, bank.structure.dimension());
+      check_count("input_names", bank.input_names, bank.structure.acting_inputs());
     });
 }
 

@@ -60,8 +60,8 @@ void exchange_drifting(Io& io, B& bank, const Units& units) {
   if constexpr (Io::reads)
     io.finish([&] {
       validate(bank);
-      check_count("state_names", bank.state_names, static_cast<std::size_t>(bank.structure.dimension()));
-      check_count("input_names", bank.input_names, static_cast<std::size_t>(bank.structure.acting_inputs()));
+      check_count("state_names", bank.state_names, bank.structure.dimension());
+      check_count("input_names", bank.input_names, bank.structure.acting_inputs());
     });
 }
 

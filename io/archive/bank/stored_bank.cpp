@@ -1,6 +1,7 @@
 #include "io/archive/bank/stored_bank.hpp"
 
 #include <algorithm>
+#include <functional>
 
 #include "modebank/base/error.hpp"
 
@@ -30,8 +31,8 @@ std::vector<ModelParameter> restore_model_parameters(const StoredChannels& store
   return parameters;
 }
 
-void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named) {
-  if (names.empty() || names.size() == named) return;
+void check_count(const std::string& what, const std::vector<std::string>& names, Index named) {
+  if (names.empty() || std::ssize(names) == named) return;
   throw DataError(what + " holds " + std::to_string(names.size()) + " names for " + std::to_string(named));
 }
 
@@ -65,28 +66,19 @@ template <class Visit>
 void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, Visit visit) {
   const Index n = s.dimension(), p = s.parameters();
   const Presence always = Presence::always, if_any = Presence::if_any;
-  visit(
-      &StoredBank::c, "c", n, Index{1}, [](auto& mode) -> auto& { return mode.model.c; }, always);
-  visit(
-      &StoredBank::A, "A", n, n, [](auto& mode) -> auto& { return mode.model.A; }, always);
-  visit(
-      &StoredBank::B, "B", n, s.acting_inputs(), [](auto& mode) -> auto& { return mode.model.B; }, always);
-  visit(
-      &StoredBank::Q, "Q", n, n, [](auto& mode) -> auto& { return mode.Q; }, always);
-  visit(
-      &StoredBank::parameter_covariance, "parameter covariance", p, p,
-      [](auto& mode) -> auto& { return mode.parameter_covariance; }, if_any);
-  visit(
-      &StoredBank::standard_error, "parameter standard error", p, Index{1},
-      [](auto& mode) -> auto& { return mode.standard_error; }, if_any);
-  visit(
-      &StoredBank::Q_standard_error, "Q standard error", n, n,
-      [](auto& mode) -> auto& { return mode.Q_standard_error; }, if_any);
-  visit(
-      &StoredBank::bend, "term coefficients", s.states, terms, [](auto& mode) -> auto& { return mode.bend; }, if_any);
-  visit(
-      &StoredBank::bend_standard_error, "term coefficients standard error", s.states, terms,
-      [](auto& mode) -> auto& { return mode.bend_standard_error; }, if_any);
+  const auto of_model = [](auto matrix) {
+    return [=](auto& mode) -> auto& { return mode.model.*matrix; };
+  };
+  visit(&StoredBank::c, "c", n, Index{1}, of_model(&LinearModel::c), always);
+  visit(&StoredBank::A, "A", n, n, of_model(&LinearModel::A), always);
+  visit(&StoredBank::B, "B", n, s.acting_inputs(), of_model(&LinearModel::B), always);
+  visit(&StoredBank::Q, "Q", n, n, &Mode::Q, always);
+  visit(&StoredBank::parameter_covariance, "parameter covariance", p, p, &Mode::parameter_covariance, if_any);
+  visit(&StoredBank::standard_error, "parameter standard error", p, Index{1}, &Mode::standard_error, if_any);
+  visit(&StoredBank::Q_standard_error, "Q standard error", n, n, &Mode::Q_standard_error, if_any);
+  visit(&StoredBank::bend, "term coefficients", s.states, terms, &Mode::bend, if_any);
+  visit(&StoredBank::bend_standard_error, "term coefficients standard error", s.states, terms,
+        &Mode::bend_standard_error, if_any);
   const auto visit_response = [&](auto value, auto error, const char* what, auto number) {
     visit(
         value, what, s.states, s.inputs, [=](auto& mode) -> auto& { return mode.response.value.*number; }, if_any);
@@ -99,13 +91,14 @@ void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, 
   visit_response(&StoredBank::settling_time_s, &StoredBank::settling_time_error_s, "settling time",
                  &StepResponse::settling_s);
   visit_response(&StoredBank::overshoot, &StoredBank::overshoot_error, "overshoot", &StepResponse::overshoot);
+  visit_response(&StoredBank::largest_pole, &StoredBank::largest_pole_error, "largest pole", &StepResponse::radius);
+  visit(
+      &StoredBank::never_settles, "share that never settles", s.states, s.inputs,
+      [](auto& mode) -> auto& { return mode.response.never_settles; }, if_any);
   if (p_motion == 0) return;
-  visit(
-      &StoredBank::motion_parameters, "motion parameters", p_motion, Index{1},
-      [](auto& mode) -> auto& { return mode.motion_theta; }, always);
-  visit(
-      &StoredBank::motion_standard_error, "motion standard error", p_motion, Index{1},
-      [](auto& mode) -> auto& { return mode.motion_standard_error; }, always);
+  visit(&StoredBank::motion_parameters, "motion parameters", p_motion, Index{1}, &Mode::motion_theta, always);
+  visit(&StoredBank::motion_standard_error, "motion standard error", p_motion, Index{1}, &Mode::motion_standard_error,
+        always);
 }
 
 /// Calls visit(member of StoredBank, member of the bank) for each matrix that belongs to the bank and not to a mode.
@@ -199,12 +192,12 @@ StoredBank store_bank(const Bank& bank) {
   stored.structure = bank.structure;
   for_each_mode_array(bank.structure, std::ssize(bank.motion_parameters), bank.terms.count(),
                       [&](auto array, const char* what, Index rows, Index cols, auto of, Presence presence) {
-                        const auto absent = [&](const Mode& mode) { return of(mode).size() == 0; };
+                        const auto absent = [&](const Mode& mode) { return std::invoke(of, mode).size() == 0; };
                         if (presence == Presence::if_any && std::all_of(bank.modes.begin(), bank.modes.end(), absent))
                           return;
                         stored.*array = side_by_side(
                             bank.modes.size(), rows, cols,
-                            what, [&](std::size_t k) -> const auto& { return of(bank.modes[k]); });
+                            what, [&](std::size_t k) -> const auto& { return std::invoke(of, bank.modes[k]); });
                       });
   stored.parameters.resize(bank.structure.parameters(), bank.mode_count());
   stored.weight.resize(bank.mode_count());
@@ -244,7 +237,7 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
     for_each_mode_array(s, p_motion, bank.terms.count(),
                         [&](auto array, const char*, Index rows, Index cols, auto of, Presence presence) {
                           if (presence == Presence::always || (stored.*array).size() > 0)
-                            of(mode) = one_of(stored.*array, k, rows, cols);
+                            std::invoke(of, mode) = one_of(stored.*array, k, rows, cols);
                         });
   }
   for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });

@@ -44,7 +44,7 @@ StoredChannels store_model_parameters(const std::vector<ModelParameter>& paramet
 std::vector<ModelParameter> restore_model_parameters(const StoredChannels& stored);
 
 /// Throws DataError if there are names, but not one for each column.
-void check_count(const std::string& what, const std::vector<std::string>& names, std::size_t named);
+void check_count(const std::string& what, const std::vector<std::string>& names, Eigen::Index named);
 
 /// Completes a structure with its number of states, which follows from the dimension n. Throws DataError if p
 /// parameters do not fit this structure.
@@ -71,6 +71,7 @@ struct StoredBank {
   Eigen::MatrixXd Q_standard_error;                                          ///< n*n x K; may be empty
   Eigen::MatrixXd steady_gain, response_time_s, settling_time_s, overshoot;  ///< n_y*inputs x K; may be empty
   Eigen::MatrixXd steady_gain_error, response_time_error_s, settling_time_error_s, overshoot_error;  ///< the same
+  Eigen::MatrixXd largest_pole, largest_pole_error, never_settles;                                   ///< the same
   Eigen::MatrixXd R_standard_error;           ///< transposed; may be empty
   Eigen::MatrixXd transition_standard_error;  ///< transposed; may be empty
   Eigen::MatrixXd transition_weights;         ///< K*d x K; equal for every previous mode; may be empty

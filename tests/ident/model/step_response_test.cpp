@@ -30,8 +30,8 @@ TEST(StepResponse, OfFirstOrderIsAnExponential) {
     EXPECT_NEAR(value.settling_s(0), std::log(20.0) * tau_s + dead_s, interpolation);
     EXPECT_NEAR(value.gain(0), 0.8, 1e-12);
     EXPECT_NEAR(value.overshoot(0), 0.0, 1e-12);
-    EXPECT_NEAR(value.radius, a, 1e-12);
-    EXPECT_TRUE(std::isnan(error.gain(0)) && std::isnan(never));
+    EXPECT_NEAR(value.radius(0), a, 1e-12);
+    EXPECT_TRUE(std::isnan(error.gain(0)) && std::isnan(never(0)));
   }
 }
 
@@ -67,8 +67,8 @@ TEST(StepResponse, OfAnIntegratorIsUnknown) {
   const auto [value, error, never] =
       step_response({1, 1}, Vector2d(0.0, 0.1), Vector2d(1e-4, 1e-4).asDiagonal().toDenseMatrix(), {1}, dt_s);
   EXPECT_TRUE(std::isnan(value.gain(0)) && std::isnan(value.response_s(0)) && std::isnan(value.settling_s(0)));
-  EXPECT_EQ(value.radius, 1.0);
-  EXPECT_NEAR(never, 0.5, 4.0 * std::sqrt(0.25 / 200.0));
+  EXPECT_EQ(value.radius(0), 1.0);
+  EXPECT_NEAR(never(0), 0.5, 4.0 * std::sqrt(0.25 / 200.0));
   EXPECT_TRUE(std::isinf(error.gain(0)));
 }
 
@@ -82,8 +82,8 @@ TEST(StepResponse, ErrorsAreThoseOfTheDeltaMethod) {
   EXPECT_NEAR(error.gain(0) / of_gain, 1.0, 0.24);
   EXPECT_NEAR(error.response_s(0) / time, 1.0, 0.24);
   EXPECT_NEAR(error.settling_s(0) / (std::log(20.0) * time), 1.0, 0.24);
-  EXPECT_NEAR(error.radius / sd_a, 1.0, 0.24);
-  EXPECT_EQ(never, 0.0);
+  EXPECT_NEAR(error.radius(0) / sd_a, 1.0, 0.24);
+  EXPECT_EQ(never(0), 0.0);
 }
 
 }  // namespace
