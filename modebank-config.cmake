@@ -1,11 +1,11 @@
 # find_package(modebank [COMPONENTS filter archive judge ident mixture learn]): the targets modebank::NAME, headers
 # <modebank/NAME/...>. Only what the named components link has to be installed; without names all of them are meant.
-#   filter   stepping a bank: Eigen's headers (for modebank/base/eigen.hpp) and, to link, libhwy
+#   filter   stepping a bank: Eigen's headers (for modebank/base/eigen.hpp)
 #   judge    scoring banks on runs: nothing besides
 #   archive  loading a bank from an archive: HDF5 and libcrypto besides (C among the project's languages)
-#   ident    fitting windows: Ceres and TBB besides
-#   mixture  clustering: TBB and fmt besides
-#   learn    learning banks: Ceres, TBB and fmt besides
+#   ident    fitting windows: Ceres, TBB and libhwy besides
+#   mixture  clustering: TBB, fmt and libhwy besides
+#   learn    learning banks: Ceres, TBB, fmt and libhwy besides
 include(CMakeFindDependencyMacro)
 set(modebank_components filter archive judge ident mixture learn)
 set(modebank_wanted ${modebank_FIND_COMPONENTS})
@@ -22,15 +22,6 @@ foreach(component IN LISTS modebank_wanted)
 endforeach()
 
 find_dependency(Eigen3 3.4)
-find_dependency(PkgConfig)
-if(NOT TARGET PkgConfig::highway)
-  pkg_check_modules(highway IMPORTED_TARGET libhwy>=1.0)
-  if(NOT highway_FOUND)
-    set(modebank_FOUND FALSE)
-    set(modebank_NOT_FOUND_MESSAGE "modebank needs libhwy (Debian: libhwy-dev)")
-    return()
-  endif()
-endif()
 if("archive" IN_LIST modebank_wanted)
   find_dependency(HDF5 1.10 COMPONENTS C)
   find_dependency(OpenSSL 3.0 COMPONENTS Crypto)
@@ -43,6 +34,15 @@ if("mixture" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
 endif()
 if("ident" IN_LIST modebank_wanted OR "mixture" IN_LIST modebank_wanted OR "learn" IN_LIST modebank_wanted)
   find_dependency(TBB)
+  find_dependency(PkgConfig)
+  if(NOT TARGET PkgConfig::highway)
+    pkg_check_modules(highway IMPORTED_TARGET libhwy>=1.0)
+    if(NOT highway_FOUND)
+      set(modebank_FOUND FALSE)
+      set(modebank_NOT_FOUND_MESSAGE "modebank needs libhwy (Debian: libhwy-dev)")
+      return()
+    endif()
+  endif()
 endif()
 include(${CMAKE_CURRENT_LIST_DIR}/modebank-targets.cmake)
 foreach(component IN LISTS modebank_wanted)

@@ -21,10 +21,7 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
 ChainInputs chain_inputs(const ChainOptions& options, LearningInputs learning) {
   const ScoringOptions scoring = scoring_inputs(options);
   const FitOptions window = learning.windows.window;
-  return {std::move(learning),
-          {options.data},
-          {window, competitor_filter("one_motion"), scoring},
-          {options.filter, scoring}};
+  return {std::move(learning), {options.data}, {window, scoring}, {options.filter, scoring}};
 }
 
 ChainInputs chain_inputs(const ChainOptions& options) { return chain_inputs(options, learning_inputs(options)); }

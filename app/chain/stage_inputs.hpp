@@ -14,7 +14,6 @@ struct DataInputs {
 
 struct CompetitorScoreInputs {
   FitOptions window;
-  FilterOptions filter;
   ScoringOptions scoring;
 };
 

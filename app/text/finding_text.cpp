@@ -24,7 +24,7 @@ std::string judged(const Finding& finding) {
 }
 
 /// Text such as "`drifting`: one linear model whose parameters wander".
-std::string described(const Finding& finding, const std::string& competitor) {
+std::string described(const std::string& competitor) {
   return fmt::format("`{}`: {}", competitor, description_of(competitor));
 }
 
@@ -54,7 +54,7 @@ std::string gain_sentence(const Finding& finding, const char* start) {
                                                                             : "better than";
   return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}).",
                      start, counted(finding.modes, "linear model"), judged(finding), than,
-                     described(finding, finding.best_competitor), likelihood_words(finding.gain),
+                     described(finding.best_competitor), likelihood_words(finding.gain),
                      gain_words(finding.gain, finding.standard_error));
 }
 

@@ -46,18 +46,17 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
 /// The competitor with one motion, learned like the bank. Expectation-maximisation with one theta shared by all modes
 /// starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses among them
 /// (refine_bank), with measurement noise as in `options`. One more start has the noises and transitions of `rival`, the
-/// bank that it competes with. `global`: the global model in linear form. `filter`: filter of the competitor.
+/// bank that it competes with. `global`: the global model in linear form.
 Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
                             const Bank& rival, const Eigen::MatrixXd& R, Eigen::Index most_levels,
-                            const BankOptions& options, const FilterOptions& filter);
+                            const BankOptions& options);
 
 /// The competitor with one nonlinear motion. theta of linear regressors and terms comes from expectation-maximisation
 /// with one theta shared by all noise levels, as in learn_one_motion. The search starts from up to four levels and one
 /// wide level. The terms of each transition are then known inputs, because states count as measured exactly (R is
-/// negligible). `em`: prior, iterations and folds of the search. `structure`: with the lags of the terms. `filter`:
-/// filter of the competitor.
+/// negligible). `em`: prior, iterations and folds of the search. `structure`: with the lags of the terms.
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
-                     const RefineOptions& em, const FilterOptions& filter);
+                     const RefineOptions& em);
 
 /// Starting banks with one theta. The first has `most` noise levels, the next three quarters of that, and so on.
 std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
@@ -65,8 +64,7 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
 
 /// Converts clustered windows into a bank (method: section 4). `R` is used unless options.measurement_variance is set.
 /// `motion`: motion model of the windows, null for linear models. Its modes are linearised at their mean state and
-/// input. If every component is screened out, the bank has one mode, merged from all components. Throws DataError if
-/// that mode is screened out, too.
+/// input. If every component is screened out, the bank has one mode, merged from all components.
 Bank learn_bank(const Recording& recording, const WindowFits& fits, const MixtureResult& mixture,
                 const BankOptions& options, const Eigen::MatrixXd& R, const MotionModel* motion = nullptr);
 

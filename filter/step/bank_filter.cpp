@@ -6,9 +6,9 @@
 #include <string>
 
 #include "filter/step/equations/predicted_mixture.hpp"
-#include "filter/step/filter_shell.hpp"
 #include "filter/step/stepper.hpp"
 #include "ident/base/covariance.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -56,15 +56,49 @@ void check_memory(const DriftState& drift, const DriftState& own) {
 
 }  // namespace
 
-struct BankFilter::Parts : FilterShell {
+/// Decides whether the filter starts at a sample, makes a step, or waits, and clears old values of the estimate.
+struct BankFilter::Parts {
+  FilterEstimate estimate;
+  bool started = false;
+  SampleFeed feed;
+  Eigen::VectorXd initial_probability;
   std::unique_ptr<Stepper> stepper;
   Eigen::MatrixXd C;
   CombinedInnovation combined;
 
   Parts(const Bank& bank, const FilterOptions& options)
-      : FilterShell(bank), stepper(make_stepper(bank, options)), C(bank.C), combined(C.rows()) {}
+      : feed(bank),
+        initial_probability(bank.initial_probability),
+        stepper(make_stepper(bank, options)),
+        C(bank.C),
+        combined(C.rows()) {
+    const Index n = bank.structure.dimension(), n_y = bank.C.rows();
+    estimate.prediction.resize(n);
+    estimate.innovation.resize(n_y);
+    estimate.innovation_covariance.resize(n_y, n_y);
+    estimate.state.resize(n);
+    estimate.covariance.resize(n, n);
+    estimate.pit.resize(n_y);
+    estimate.pit_width.setZero(n_y);
+    wait();
+  }
 
+  void take(double time_s, const Vector& input, const Vector& measurement) {
+    feed.push(time_s, input, measurement);
+    if (started && feed.steps() > longest_gap_steps) started = false;
+    if (started) {
+      step(measurement);
+    } else if (feed.can_start()) {
+      start();
+      started = true;
+    } else {
+      wait();
+    }
+  }
+
+ private:
   void start() {
+    clear_prediction();
     stepper->start(feed.start());
     estimate.mode_probability_predicted = stepper->mode_probability();
     record_posterior();
@@ -83,18 +117,40 @@ struct BankFilter::Parts : FilterShell {
     record_posterior();
   }
 
- private:
   void record_scores(const Vector& measurement) {
     combined.observe(C, estimate.prediction, estimate.innovation_covariance, measurement);
     estimate.innovation = combined.innovation;
     estimate.nis = combined.nis;
-    const double of_intervals = stepper->transform(measurement, estimate.pit, estimate.pit_width);
-    if (!std::isnan(of_intervals)) estimate.log_density = of_intervals;
+    stepper->transform(measurement, estimate.pit, estimate.pit_width, estimate.log_density);
   }
 
   void record_posterior() {
     stepper->merge(estimate.state, estimate.covariance);
     estimate.mode_probability = stepper->mode_probability();
+  }
+
+  /// No prediction was made for this sample.
+  void clear_prediction() {
+    estimate.prediction.setConstant(not_a_number);
+    estimate.innovation_covariance.setConstant(not_a_number);
+    estimate.steps = 0;
+    clear_scores();
+  }
+
+  void clear_scores() {
+    estimate.innovation.setConstant(not_a_number);
+    estimate.pit.setConstant(not_a_number);
+    estimate.pit_width.setZero();
+    estimate.nis = estimate.log_density = not_a_number;
+  }
+
+  /// Clears all values before a start.
+  void wait() {
+    clear_prediction();
+    estimate.state.setConstant(not_a_number);
+    estimate.covariance.setConstant(not_a_number);
+    estimate.mode_probability_predicted = initial_probability;
+    estimate.mode_probability = initial_probability;
   }
 };
 
@@ -106,13 +162,17 @@ BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 
 const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
-  return take_sample(*parts_, time_s, input, measurement);
+  parts_->take(time_s, input, measurement);
+  return parts_->estimate;
 }
 
 const FilterEstimate& BankFilter::estimate() const { return parts_->estimate; }
 bool BankFilter::started() const { return parts_->started; }
 
-void BankFilter::restart() { parts_->restart(); }
+void BankFilter::restart() {
+  parts_->started = false;
+  parts_->feed.clear();
+}
 
 FilterSnapshot BankFilter::snapshot() const {
   FilterSnapshot snapshot;

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/imm.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -32,7 +32,7 @@ DriftingForecast::DriftingForecast(const Bank& bank)
     : structure_(bank.structure),
       rates_(bank.drift.rates),
       running_(bank.running_noise),
-      quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd::Zero(structure_.states)),
+      rounding_(bank.rounding_variance()),
       scale_(bank.drift.scale),
       inverse_scale_(scale_.cwiseInverse()),
       theta0_(scaled_coefficients(structure_, bank.theta(0), scale_)),
@@ -40,6 +40,7 @@ DriftingForecast::DriftingForecast(const Bank& bank)
       P_(static_cast<std::size_t>(structure_.states)),
       h_(structure_.regressors()),
       direction_(wandering_direction(bank)),
+      mixing_{Eigen::MatrixXd(running_.levels(), running_.levels())},
       Z_(static_cast<std::size_t>(running_.levels())),
       cross_(static_cast<std::size_t>(structure_.states)),
       next_cross_(cross_),
@@ -80,15 +81,12 @@ void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const D
 /// The levels switch. They differ only in the covariance of the lagged errors.
 void DriftingForecast::mix() {
   if (running_.level.size() == 0) return;
-  const Eigen::VectorXd before = level_;
-  level_ = (running_.switching.transpose() * before).cwiseMax(mode_probability_floor);
-  level_ /= level_.sum();
+  mixing_weights(running_.switching, Eigen::VectorXd(level_), level_, mixing_);
+  floor_probabilities(level_);
   for (Index j = 0; j < level_.size(); ++j) {
-    Eigen::VectorXd weight = before.cwiseProduct(running_.switching.col(j)).cwiseMax(impossible_probability);
-    weight /= weight.sum();
     Eigen::MatrixXd& mixed = next_Z_[static_cast<std::size_t>(j)];
     mixed.setZero();
-    for (Index i = 0; i < level_.size(); ++i) mixed += weight(i) * Z_[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < level_.size(); ++i) mixed += mixing_.matrix(i, j) * Z_[static_cast<std::size_t>(i)];
   }
   std::swap(Z_, next_Z_);
 }
@@ -155,9 +153,8 @@ void DriftingForecast::propagate_level(std::size_t level) {
   covariance_ += mixed + mixed.transpose();
   with_lagged_ += through_;
   for (Index i = 0; i < n; ++i) {
-    const double noise = running_.level.size() == 0 ? 1.0 : running_.level(i, static_cast<Index>(level)),
-                 rounding = Z_.size() == 1 ? 0.0 : quantum_(i) * quantum_(i) / 12.0 / v_(i);
-    covariance_(i, i) += v_(i) * (std::max(noise, rounding) + of_theta_(i));
+    const double noise = level_variance(running_, i, static_cast<Index>(level), rounding_(i) / v_(i));
+    covariance_(i, i) += v_(i) * (noise + of_theta_(i));
   }
   Eigen::MatrixXd& next = next_Z_[level];
   next.topLeftCorner(n, n) = covariance_;

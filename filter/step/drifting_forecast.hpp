@@ -47,7 +47,7 @@ class DriftingForecast {
   LinearStructure structure_;
   DriftRates rates_;
   RunningNoise running_;
-  Eigen::VectorXd quantum_;  ///< n; 0 for a continuous signal
+  Eigen::VectorXd rounding_;  ///< n, variance of rounding
   Eigen::VectorXd scale_, inverse_scale_;
   Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, coefficients of scaled regressors
   std::vector<Eigen::MatrixXd> P_;          ///< n matrices r x r, covariances of theta at the origin, divided by v
@@ -57,6 +57,7 @@ class DriftingForecast {
                                                      ///< difference from it
   Eigen::MatrixXd direction_;                        ///< r x n, direction of the drift; empty if all coefficients drift
   double of_origin_ = 1.0, of_drift_ = 0.0;          ///< cov(d) / v = of_origin P + of_drift W
+  MixingWeights mixing_;                             ///< of the levels
   std::vector<Eigen::MatrixXd> Z_, next_Z_;          ///< per level: covariance of the lagged errors
   std::vector<Eigen::MatrixXd> cross_, next_cross_;  ///< per output r x dimension: covariance of d with the lagged
                                                      ///< errors

@@ -5,7 +5,6 @@
 #include <numeric>
 #include <utility>
 
-#include "filter/step/equations/bounds.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -65,6 +64,7 @@ DriftingRecursion::DriftingRecursion(const Bank& bank)
       running_(bank.running_noise),
       noise_(running_.nu),
       quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd::Zero(structure_.states)),
+      rounding_(bank.rounding_variance()),
       start_variance_(bank.noise_variance()),
       start_level_(running_.level.size() == 0 ? Eigen::VectorXd::Ones(1) : stationary(running_.switching)),
       inverse_scale_(bank.drift.scale.cwiseInverse()),
@@ -73,7 +73,7 @@ DriftingRecursion::DriftingRecursion(const Bank& bank)
       P_of_(static_cast<std::size_t>(structure_.states)),
       level_(start_level_),
       predicted_level_(level_),
-      mixing_(level_.size(), level_.size()),
+      mixing_{Eigen::MatrixXd(level_.size(), level_.size())},
       h_(structure_.regressors()),
       prediction_(structure_.states),
       variance_(structure_.states),
@@ -115,9 +115,9 @@ void DriftingRecursion::mix_output(Index level, Index output) {
   Eigen::MatrixXd& P = mixed_P_[static_cast<std::size_t>(at(level, output))];
   theta.setZero();
   P.setZero();
-  for (Index i = 0; i < levels(); ++i) theta += mixing_(i, level) * theta_.col(at(i, output));
+  for (Index i = 0; i < levels(); ++i) theta += mixing_.matrix(i, level) * theta_.col(at(i, output));
   for (Index i = 0; i < levels(); ++i) {
-    const double weight = mixing_(i, level);
+    const double weight = mixing_.matrix(i, level);
     P += weight * P_[static_cast<std::size_t>(at(i, output))];
     deviation_ = theta_.col(at(i, output)) - theta;
     add_square(weight / v_(output), deviation_, P);
@@ -128,14 +128,10 @@ void DriftingRecursion::mix_output(Index level, Index output) {
 void DriftingRecursion::mix() {
   predicted_level_ = level_;
   if (!switches()) return;
-  predicted_level_.noalias() = running_.switching.transpose() * level_;
-  predicted_level_ = predicted_level_.cwiseMax(mode_probability_floor);
-  predicted_level_ /= predicted_level_.sum();
-  for (Index j = 0; j < levels(); ++j) {
-    mixing_.col(j) = level_.cwiseProduct(running_.switching.col(j)).cwiseMax(impossible_probability);
-    mixing_.col(j) /= mixing_.col(j).sum();
+  mixing_weights(running_.switching, level_, predicted_level_, mixing_);
+  floor_probabilities(predicted_level_);
+  for (Index j = 0; j < levels(); ++j)
     for (Index i = 0; i < structure_.states; ++i) mix_output(j, i);
-  }
   theta_.swap(mixed_theta_);
   P_.swap(mixed_P_);
 }
@@ -160,9 +156,7 @@ void DriftingRecursion::predict_level(Index j) {
   for (Index g = 0; g < P_count_; ++g) {
     auto Ph = Ph_.col(at(j, g));
     Ph.noalias() = P(j, g).selfadjointView<Eigen::Lower>() * h_;
-    const double level = switches() ? running_.level(g, j) : 1.0;
-    const double rounding = levels() == 1 ? 0.0 : quantum_(g) * quantum_(g) / 12.0 / v_(g);
-    growth_(at(j, g)) = std::max(level, rounding) + std::max(0.0, h_.dot(Ph));
+    growth_(at(j, g)) = level_variance(running_, g, j, rounding_(g) / v_(g)) + std::max(0.0, h_.dot(Ph));
   }
   for (Index i = 0; i < structure_.states; ++i) {
     const double value = z_(i) + theta_.col(at(j, i)).dot(h_);
@@ -226,15 +220,11 @@ double DriftingRecursion::probability(Index i, double away, const Vector& weight
 
 /// Bayes' rule for the levels. A missing output has no effect.
 double DriftingRecursion::weigh_levels(Index outputs, Eigen::VectorXd& weight) const {
-  weight = predicted_level_.array().log();
+  weight.setZero(levels());
   for (Index j = 0; j < levels(); ++j)
     for (Index i = 0; i < outputs; ++i)
-      if (!std::isnan(innovation_(i))) weight(j) += std::max(lowest_log_density, log_density(i, j));
-  const double highest = weight.maxCoeff();
-  weight = (weight.array() - highest).exp();
-  const double sum = weight.sum();
-  weight /= sum;
-  return highest + std::log(sum);
+      if (!std::isnan(innovation_(i))) weight(j) += measured_density(log_density(i, j));
+  return bayes(predicted_level_, weight, weight);
 }
 
 void DriftingRecursion::learn() {
@@ -279,7 +269,7 @@ double DriftingRecursion::update(const Vector& measured) {
   adapt_variance();
   push(sample_);
   pass_time();
-  return innovation_.array().isNaN().all() ? not_a_number : measured_density(log_density);
+  return innovation_.array().isNaN().all() ? not_a_number : log_density;
 }
 
 void DriftingRecursion::push(const Eigen::VectorXd& sample) {

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <vector>
 
 #include "filter/step/bank.hpp"
+#include "filter/step/equations/imm.hpp"
 #include "filter/step/student_noise.hpp"
 
 namespace modebank {
@@ -14,9 +16,8 @@ namespace modebank {
 /// W = I, or W = d d' if coefficients drift in one direction d. The variance of e is v times the present noise level.
 /// In units of v, errors and gains do not depend on v. So with one level one recursion serves every v and all outputs.
 ///
-/// With several levels this is an interacting multiple model filter (Blom & Bar-Shalom 1988): one Gaussian of theta per
-/// level. Before each step these are mixed with the weights mu_i T_ij / c_j, c = T' mu. Levels start with the
-/// stationary distribution of T.
+/// With several levels this is an interacting multiple model filter (equations/imm.hpp): one Gaussian of theta per
+/// level. Levels start with the stationary distribution of T.
 ///
 /// Choices that the method leaves open, with reasons:
 /// - The first step after a start uses theta0 with covariance p0 v I, without leak or q.
@@ -54,6 +55,7 @@ class DriftingRecursion {
   /// the log density of these outputs.
   double weigh_levels(Eigen::Index outputs, Eigen::VectorXd& weight) const;
 
+  const Eigen::VectorXd& quantum() const { return quantum_; }  ///< n, quanta; 0 for a continuous signal
   /// s + h'Ph of the first level, the variance of an output's prediction divided by v.
   double growth(Eigen::Index output) const { return growth_(of(output)); }
 
@@ -66,7 +68,7 @@ class DriftingRecursion {
   DriftRates rates_;
   RunningNoise running_;
   StudentNoise noise_;
-  Eigen::VectorXd quantum_;                   ///< n, quanta; 0 for a continuous signal
+  Eigen::VectorXd quantum_, rounding_;        ///< n, quanta and variances of rounding
   Eigen::VectorXd start_variance_;            ///< n
   Eigen::VectorXd start_level_;               ///< J
   Eigen::VectorXd inverse_scale_;             ///< r
@@ -78,7 +80,7 @@ class DriftingRecursion {
   Eigen::Index P_count_ = 1;                  ///< one P is shared by all outputs until a signal is missing
   Eigen::VectorXd z_, v_;
   Eigen::VectorXd level_, predicted_level_;  ///< J, probabilities of the levels after and before the last update
-  Eigen::MatrixXd mixing_;                   ///< J x J, column j: weights of the levels in the mixture for level j
+  MixingWeights mixing_;                     ///< of the levels
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_, deviation_;
   Eigen::MatrixXd Ph_;                         ///< r x J n; each P in use has one column
   Eigen::VectorXd growth_;                     ///< J n; each P in use has one entry
@@ -100,6 +102,13 @@ class DriftingRecursion {
   void adapt_variance();
   void push(const Eigen::VectorXd& sample);
 };
+
+/// Variance of an output's noise in a level, in units of v. `rounding`: that of rounding, which v itself contains if
+/// there is one level.
+inline double level_variance(const RunningNoise& noise, Eigen::Index output, Eigen::Index j, double rounding) {
+  if (noise.levels() == 1) return noise.level.size() == 0 ? 1.0 : noise.level(output, 0);
+  return std::max(noise.level(output, j), rounding);
+}
 
 /// theta, as coefficients of scaled regressors, r x n.
 Eigen::MatrixXd scaled_coefficients(const LinearStructure& structure, const Eigen::VectorXd& theta,

@@ -9,10 +9,7 @@ namespace modebank {
 
 using Eigen::Index;
 
-DriftingStepper::DriftingStepper(const Bank& bank)
-    : recursion_(bank),
-      weight_(bank.running_noise.levels()),
-      quantum_(bank.is_quantised() ? bank.quantum : Eigen::VectorXd::Zero(bank.structure.states)) {}
+DriftingStepper::DriftingStepper(const Bank& bank) : recursion_(bank), weight_(bank.running_noise.levels()) {}
 
 void DriftingStepper::skip(const Vector& v) {
   recursion_.predict(v);
@@ -20,16 +17,17 @@ void DriftingStepper::skip(const Vector& v) {
 }
 
 void DriftingStepper::combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) {
-  const Index n = quantum_.size(), lagged = state.size() - n;
+  const Index n = recursion_.prediction().size(), lagged = state.size() - n;
   state.head(n) = recursion_.prediction();
   state.tail(lagged) = recursion_.z().head(lagged);
   innovation_covariance.setZero();
   innovation_covariance.diagonal() = recursion_.variance();
 }
 
-double DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) {
-  for (Index i = 0; i < quantum_.size(); ++i) {
-    const double half = 0.5 * quantum_(i);
+void DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width,
+                                double&) {
+  for (Index i = 0; i < pit.size(); ++i) {
+    const double half = 0.5 * recursion_.quantum()(i);
     pit(i) = not_a_number;
     if (std::isnan(recursion_.innovation()(i))) continue;
     recursion_.weigh_levels(i, weight_);
@@ -41,7 +39,6 @@ double DriftingStepper::transform(const Vector&, Eigen::Ref<Eigen::VectorXd> pit
     pit(i) = 0.5 * (low + high);
     width(i) = high - low;
   }
-  return not_a_number;  // `update` has returned the masses
 }
 
 void DriftingStepper::merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) {

@@ -21,7 +21,9 @@ class DriftingStepper final : public Stepper {
   double update(const Vector& y) override { return recursion_.update(y); }
 
   void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override;
-  double transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override;
+  /// `update` has returned the masses of intervals, so the log density stays.
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width,
+                 double& log_density) override;
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override;
   Eigen::Map<const Eigen::VectorXd> predicted_probability() const override { return mode_probability(); }
   Eigen::Map<const Eigen::VectorXd> mode_probability() const override { return {one_.data(), one_.size()}; }
@@ -31,8 +33,7 @@ class DriftingStepper final : public Stepper {
 
  private:
   DriftingRecursion recursion_;
-  Eigen::VectorXd weight_;   ///< probabilities of the noise levels
-  Eigen::VectorXd quantum_;  ///< n, quanta; 0 for a continuous signal
+  Eigen::VectorXd weight_;  ///< probabilities of the noise levels
   Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
 };
 

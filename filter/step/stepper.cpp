@@ -4,7 +4,6 @@
 #include "filter/step/equations/filter_memory.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/equations/predicted_mixture.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -32,10 +31,12 @@ class EquationStepper final : public Stepper {
   void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) override {
     modebank::combine(model_, step_, state, innovation_covariance);
   }
-  double transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) override {
-    if (model_.quantum.size() > 0) return interval_transform(model_, y, step_, weights_, pit, width);
-    probability_transform(y, step_, weights_, pit);
-    return not_a_number;
+  void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width,
+                 double& log_density) override {
+    if (model_.quantum.size() > 0)
+      log_density = interval_transform(model_, y, step_, weights_, pit, width);
+    else
+      probability_transform(y, step_, weights_, pit);
   }
   void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) override {
     modebank::merge(state_.modes, state_.mode_probability, moments_);

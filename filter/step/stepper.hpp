@@ -11,11 +11,10 @@ namespace modebank {
 struct FilterMemory;
 
 /// A bank's filter for any size and variant (equations/filter_step.hpp). Call `start` first. Then call `advance` and
-/// `update` for each sample, or `follow` for many. Allocates only at construction.
+/// `update` for each sample. Allocates only at construction.
 class Stepper {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
-  using Columns = Eigen::Ref<const Eigen::MatrixXd>;
 
   virtual ~Stepper() = default;
   /// Starts from the first measurement `y`; with lags, from the first complete z.
@@ -25,14 +24,6 @@ class Stepper {
   virtual void skip(const Vector& v) = 0;
   /// Updates with `y`. Returns the log predictive density [nats] of the available signals; NaN if there are none.
   virtual double update(const Vector& y) = 0;
-  /// Calls `predict` and `update` for a stretch of samples, each one step after the previous one. Computes the log
-  /// predictive densities of `measurements` (n_y x samples) under `inputs` (acting inputs x samples).
-  virtual void follow(const Columns& inputs, const Columns& measurements, Eigen::Ref<Eigen::VectorXd> log_density) {
-    for (Eigen::Index k = 0; k < measurements.cols(); ++k) {
-      predict(inputs.col(k));
-      log_density(k) = update(measurements.col(k));
-    }
-  }
   /// Advances from the previous sample to the prediction of the next sample, which is `steps` model steps later.
   void advance(const Vector& v, Eigen::Index steps) {
     for (Eigen::Index i = 1; i < steps; ++i) skip(v);
@@ -42,9 +33,10 @@ class Stepper {
   /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`.
   virtual void combine(Eigen::Ref<Eigen::VectorXd> state, Eigen::Ref<Eigen::MatrixXd> innovation_covariance) = 0;
   /// Probability integral transform of y (predicted_mixture.hpp), n_y. Call after `update` with the same y. `width`:
-  /// width of the interval whose middle is `pit`; unchanged if no signal is rounded. Returns the log density of the
-  /// intervals; NaN if no signal is rounded.
-  virtual double transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width) = 0;
+  /// width of the interval whose middle is `pit`; unchanged if no signal is rounded. `log_density`: that of `update`;
+  /// if signals are rounded it becomes that of their intervals.
+  virtual void transform(const Vector& y, Eigen::Ref<Eigen::VectorXd> pit, Eigen::Ref<Eigen::VectorXd> width,
+                         double& log_density) = 0;
   /// Moments of the present mixture, n and n x n.
   virtual void merge(Eigen::Ref<Eigen::VectorXd> mean, Eigen::Ref<Eigen::MatrixXd> covariance) = 0;
   virtual Eigen::Map<const Eigen::VectorXd> predicted_probability() const = 0;  ///< K

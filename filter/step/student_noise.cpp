@@ -30,7 +30,7 @@ StudentNoise::StudentNoise(double degrees) : degrees_(degrees), log_constant_(0.
 }
 
 double StudentNoise::probability(double value) const {
-  if (gaussian()) return 0.5 * std::erfc(-value / std::numbers::sqrt2);
+  if (gaussian()) return normal_cdf(value);
   return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
 }
 

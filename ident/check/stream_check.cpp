@@ -1,7 +1,6 @@
 #include "ident/check/stream_check.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>

@@ -149,6 +149,7 @@ Identifiability identifiable(const Recording& recording, const VectorXd& quanta)
     low = low.cwiseMin(runs.back().rowwise().minCoeff());
     high = high.cwiseMax(runs.back().rowwise().maxCoeff());
   }
+  if (samples == 0) return {};
   const VectorXd size = low.cwiseAbs().cwiseMax(high.cwiseAbs());
   Identifiability found;
   for (Index c = 0; c < columns; ++c)

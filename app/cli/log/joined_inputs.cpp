@@ -11,7 +11,6 @@
 #include "app/cli/log/log_configuration.hpp"
 #include "app/config/option_text.hpp"
 #include "app/init/words.hpp"
-#include "app/text/operating_point.hpp"
 #include "ident/lag/identifiable.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
@@ -119,16 +118,14 @@ void leave_out_joined_inputs(const std::filesystem::path& file, const std::files
 std::vector<std::string> joined_doubts(const Recording& recording) {
   const std::vector<std::string> names = names_of_columns(recording);
   const Index n = recording.state_count();
-  Spread inputs(recording.input_count());
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train) inputs.add(run.inputs());
+  const Identifiability found = identifiable(recording, decimal_steps(recording));
   std::vector<std::string> doubts;
-  for (Index i = 0; i < recording.input_count(); ++i)
-    if (inputs.high(i) == inputs.low(i))
-      doubts.push_back(names[static_cast<std::size_t>(n + i)] +
+  for (const Index column : found.resting)
+    if (column >= n)
+      doubts.push_back(names[static_cast<std::size_t>(column)] +
                        " never moves, so the log shows nothing of its effect: leave it out of data.input");
   std::set<std::set<Index>> told;
-  for (const ColumnRelation& relation : identifiable(recording, decimal_steps(recording)).relations) {
+  for (const ColumnRelation& relation : found.relations) {
     std::set<Index> columns(relation.joined.begin(), relation.joined.end());
     columns.insert(relation.column);
     if (relation.column >= n && told.insert(std::move(columns)).second)

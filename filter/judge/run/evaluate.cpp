@@ -47,22 +47,6 @@ void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
   e.mode_probability.col(k) = estimate.mode_probability;
 }
 
-/// Runs the filter only. Calls take(first, log densities) for every stretch of scored samples. If no signal was
-/// measured, a log density is NaN.
-template <class Take>
-void score_samples(const Bank& bank, const Trajectory& run, const FilterOptions& options, Take take) {
-  const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
-  Eigen::VectorXd log_density;
-  RunSamples(bank, run).for_each_stretch([&](const SampleFeed& feed) { stepper->start(feed.start()); },
-                                         [&](const SampleStretch& stretch) {
-                                           for (Index i = 1; i < stretch.steps; ++i)
-                                             stepper->skip(stretch.inputs.col(0));
-                                           log_density.resize(stretch.measured.cols());
-                                           stepper->follow(stretch.inputs, stretch.measured, log_density);
-                                           take(stretch.first, log_density);
-                                         });
-}
-
 /// `bank`: any bank with the sizes of the filter's results.
 template <class Filter>
 RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
@@ -92,21 +76,19 @@ void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluati
 }
 
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  check_run(bank, run);
-  double total = 0.0;
-  score_samples(bank, run, options, [&](Index, const Eigen::VectorXd& log_density) {
-    double sum = total;  // summed sample by sample, so that rounding does not depend on the stretches
-    for (const double value : log_density) sum += std::isnan(value) ? 0.0 : value;
-    total = sum;
-  });
-  return total;
+  double sum = 0.0;
+  for (const double value : log_densities(bank, run, options)) sum += std::isnan(value) ? 0.0 : value;
+  return sum;
 }
 
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
-  score_samples(bank, run, options, [&](Index first, const Eigen::VectorXd& log_density) {
-    result.segment(first, log_density.size()) = log_density;
+  const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
+  for_each_sample(bank, run, [&](const SampleFeed& feed, Index k, bool starts) {
+    if (starts) return stepper->start(feed.start());
+    stepper->advance(feed.inputs(), feed.steps());
+    result(k) = stepper->update(run.state.col(k));
   });
   return result;
 }

@@ -81,9 +81,8 @@ Refinement learn_one_motion(const LearnedFrom& from, const Bank& rival, const Ba
   const bool of_windows = one.structure == from.windows.structure;
   WindowFits own;
   own.structure = one.structure;
-  Refinement refined =
-      learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
-                       std::max(fewest_levels, from.mixture.mixture.components()), learned.bank, learned.filter);
+  Refinement refined = learn_one_motion(recording, of_windows ? from.windows : own, one.global, rival, from.baseline.R,
+                                        std::max(fewest_levels, from.mixture.mixture.components()), learned.bank);
   progress.progress(fmt::format("one_motion: {} noise levels in {:.2f} s", refined.bank.mode_count(), watch.seconds()));
   return refined;
 }

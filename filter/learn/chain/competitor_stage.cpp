@@ -98,7 +98,7 @@ std::optional<Bank> nonlinear(const Recording& recording, LinearStructure struct
   }
   RefineOptions em = inputs.em;
   em.noise_by_input = noise_by_input;
-  Bank bank = learn_nonlinear(recording, found.structure, found.terms, em, inputs.filter);
+  Bank bank = learn_nonlinear(recording, found.structure, found.terms, em);
   progress.progress(fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
                                 lags_of(found.structure), bank.mode_count(), watch.seconds()));
   return bank;

@@ -42,7 +42,6 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
   RefineOptions em = options.bank.em;
   em.seed = options.seed;
   return {window,
-          competitor_filter("one_motion"),
           options.bank.em.transitions,
           options.seed,
           rivals ? options.terms : "none",
@@ -60,8 +59,7 @@ std::optional<OneMotionInputs> one_motion_inputs(const LearningOptions& options)
   learned.measurement_variance = options.bank.measurement_variance;
   learned.em = options.bank.em;
   learned.em.seed = options.seed;
-  return OneMotionInputs{learned, competitor_filter("one_motion"), options.scoring.horizon,
-                         options.other_lags.one_motion};
+  return OneMotionInputs{learned, options.scoring.horizon, options.other_lags.one_motion};
 }
 
 }  // namespace

@@ -31,7 +31,6 @@ struct SingleModel {
 /// at most as many noise levels as the mixture has components.
 struct CompetitorInputs {
   FitOptions window;
-  FilterOptions filter;                  ///< filter of the competitors; needed for `nonlinear`
   Index transitions = 0;                 ///< largest number of transitions to learn from, as for the bank; 0 takes all
   std::uint64_t seed = 1;                ///< seed that selects these transitions
   std::string terms = "auto";            ///< terms of `nonlinear`
@@ -48,7 +47,6 @@ struct CompetitorInputs {
 /// Inputs of the competitor `one_motion`, which is learned like the bank.
 struct OneMotionInputs {
   BankOptions bank;
-  FilterOptions filter;                ///< its filter
   std::vector<Index> horizon = {};     ///< horizons at which left-out training runs are predicted, in addition to one
                                        ///< sample ahead
   std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used

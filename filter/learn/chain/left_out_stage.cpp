@@ -33,12 +33,12 @@ Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training
     found.structure = learned.nonlinear->structure;
     found.terms = learned.nonlinear->terms;
   }
-  return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em, *inputs.filter);
+  return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em);
 }
 
 /// The filters learned without the left-out runs of a split. Some come from refinement; the other filters get new
-/// coefficients. A few numbers are not learned again: Q and R of a baseline that is
-/// not of the linear stage, and the rates of `drifting`.
+/// coefficients. A few numbers are not learned again: Q and R of a baseline that is not of the linear stage, and the
+/// rates of `drifting`.
 Learning learned_on(const Learning& learned, const Recording& training, const BankInputs& inputs,
                     const OfSplits& of_splits, std::size_t split) {
   Learning anew;

@@ -6,32 +6,14 @@
 #include <stdexcept>
 #include <vector>
 
+#include "filter/judge/run/drifting.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/drifting_lanes.hpp"
-#include "filter/step/drifting_recursion.hpp"
-#include "filter/step/feed/run_samples.hpp"
-#include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
-
-/// A training run prepared for the recursion.
-struct GridRun {
-  const Trajectory& trajectory;
-  RunInstants instants;
-};
-
-std::vector<GridRun> training_instants(const Bank& bank, const Recording& recording) {
-  std::vector<GridRun> runs;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != Role::train) continue;
-    check_run(bank, run);
-    runs.push_back({run, RunInstants(bank, run)});
-  }
-  return runs;
-}
 
 /// Inputs of all running variances and densities for one (q, p0, leak): e^2 / (1 + h'Ph), divided by v0, of each scored
 /// signal, by output. Also the restarts of the running variance.
@@ -48,38 +30,26 @@ struct DriftTrace {
   }
 
   void add(const DriftingRecursion& recursion, const Eigen::VectorXd& v0) {
-    bool scored = false;
     for (Index i = 0; i < v0.size(); ++i) {
       const double e = recursion.innovation()(i), growth = recursion.growth(i);
       if (std::isnan(e)) continue;
       ratio[static_cast<std::size_t>(i)].push_back(e * e / growth / v0(i));
       log_variance += std::log(v0(i)) + std::log(growth);
-      scored = true;
     }
-    samples += scored ? 1 : 0;
+    ++samples;
   }
 };
 
-DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<GridRun>& runs) {
+DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<TrainingRun>& runs) {
   bank.drift.rates = rates;
   const Eigen::VectorXd v0 = bank.noise_variance();
   DriftTrace trace(static_cast<std::size_t>(v0.size()));
   DriftingRecursion recursion(bank);
-  for (const GridRun& run : runs)
+  for (const TrainingRun& run : runs)
     for (Index t = 0; t < run.instants.count(); ++t) {
-      const Instant& instant = run.instants.instants[static_cast<std::size_t>(t)];
-      if (instant.starts) {
-        recursion.start(instant.start);
-        trace.begin();
-        continue;
-      }
-      recursion.predict(run.instants.inputs.col(t));
-      if (instant.sample < 0) {
-        recursion.skip();
-      } else {
-        recursion.update(run.trajectory.state.col(instant.sample));
-        trace.add(recursion, v0);
-      }
+      const double log_density = follow(run.instants, t, run.trajectory, recursion);
+      if (run.instants.instants[static_cast<std::size_t>(t)].starts) trace.begin();
+      if (!std::isnan(log_density)) trace.add(recursion, v0);
     }
   return trace;
 }
@@ -99,6 +69,16 @@ void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<E
 
 }  // namespace
 
+std::vector<TrainingRun> training_runs(const Bank& bank, const Recording& recording) {
+  std::vector<TrainingRun> runs;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    check_run(bank, run);
+    runs.push_back({run, RunInstants(bank, run)});
+  }
+  return runs;
+}
+
 std::array<Index, 6> DriftingGrid::point(Index index) const {
   const std::array<Index, 6> size = sizes();
   std::array<Index, 6> at{};
@@ -117,7 +97,7 @@ DriftingScores score_drifting_grid(const Bank& start, const Recording& recording
   const std::array<Index, 6> size = grid.sizes();
   for (const Index values : size)
     if (values == 0) throw std::invalid_argument("the drifting model's grid has a setting without values");
-  const std::vector<GridRun> runs = training_instants(start, recording);
+  const std::vector<TrainingRun> runs = training_runs(start, recording);
   const Index drifts = size[0] * size[1] * size[2], rest = size[3] * size[4] * size[5];
   DriftingScores scores{Eigen::VectorXd(drifts * rest), 0, Eigen::MatrixXd(start.structure.states, drifts)};
   std::vector<Index> samples(static_cast<std::size_t>(drifts), 0);

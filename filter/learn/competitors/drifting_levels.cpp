@@ -11,7 +11,6 @@
 #include "filter/judge/run/drifting.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/refine/learning_part.hpp"
-#include "filter/step/feed/run_samples.hpp"
 
 namespace modebank {
 namespace {
@@ -27,27 +26,14 @@ std::array<std::vector<double>, 7> grids() {
   return {grid.q, {1e-2, 1e-1, 1.0, 10.0, 100.0}, grid.leak, grid.lam, grid.nu, grid.floor, {0.1, 0.3, 1.0}};
 }
 
-struct Training {
-  std::vector<const Trajectory*> runs;
-  std::vector<RunInstants> instants;
-
-  Training(const Bank& bank, const Recording& recording) {
-    for (const Trajectory& run : recording.runs) {
-      if (run.role != Role::train) continue;
-      runs.push_back(&run);
-      instants.emplace_back(bank, run);
-    }
-  }
-};
-
 /// The training score, one sample ahead.
-GridTuning scored(const Bank& bank, const Training& training) {
-  std::vector<double> sums(training.runs.size(), 0.0);
-  std::vector<Index> samples(training.runs.size(), 0);
+GridTuning scored(const Bank& bank, const std::vector<TrainingRun>& runs) {
+  std::vector<double> sums(runs.size(), 0.0);
+  std::vector<Index> samples(runs.size(), 0);
   tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t r) {
     DriftingRecursion recursion(bank);
-    for (Index t = 0; t < training.instants[r].count(); ++t) {
-      const double log_density = follow(training.instants[r], t, *training.runs[r], recursion);
+    for (Index t = 0; t < runs[r].instants.count(); ++t) {
+      const double log_density = follow(runs[r].instants, t, runs[r].trajectory, recursion);
       if (std::isnan(log_density)) continue;
       sums[r] += log_density;
       ++samples[r];
@@ -66,7 +52,8 @@ GridTuning scored(const Bank& bank, const Training& training) {
 class Climb {
  public:
   /// `frame`: a model with levels whose settings are ignored.
-  Climb(const Bank& frame, const Training& training) : frame_(frame), training_(training), grids_(grids()) {}
+  Climb(const Bank& frame, const std::vector<TrainingRun>& training)
+      : frame_(frame), training_(training), grids_(grids()) {}
 
   void from(Point at) {
     constexpr double least_climb = 1e-5;  // [nats/sample]
@@ -90,7 +77,7 @@ class Climb {
 
  private:
   const Bank& frame_;
-  const Training& training_;
+  const std::vector<TrainingRun>& training_;
   std::array<std::vector<double>, 7> grids_;
   std::map<Point, double> known_;
   std::optional<Point> best_;
@@ -143,7 +130,7 @@ Bank with_noise_levels(const Bank& drifting, const Bank& one_motion, const Recor
   const Index most = affordable_transitions(frame);
   if (most < fewest_transitions) return drifting;
   const std::optional<Recording> part = learning_part(recording, most, 1);
-  const Training training(frame, part ? *part : recording);
+  const std::vector<TrainingRun> training = training_runs(frame, part ? *part : recording);
   Climb climb(frame, training);
   // q 1e-3, p0 10, no leak, Gaussian, the lowest floor, v0; a short and a long memory of the variance
   for (const std::size_t lam : {5, 7}) climb.from({3, 3, 0, lam, 0, 0, 2});

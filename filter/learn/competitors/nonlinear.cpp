@@ -154,7 +154,7 @@ void add_wide_level(Bank& bank) {
 }  // namespace
 
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
-                     const RefineOptions& options, const FilterOptions& filter) {
+                     const RefineOptions& options) {
   const Recording known = with_known_terms(recording, structure, terms);
   require_transitions(!known.runs.empty());
   WindowFits frame;
@@ -172,7 +172,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   Bank bank = refine_bank(known, frame,
                           level_starts(known, frame.structure, R, most_levels, refine_tuning.modes_kept,
                                        of_known(factor, terms)),
-                          em, filter)
+                          em, FilterOptions{})
                   .bank;
   add_wide_level(bank);
   return with_terms(std::move(bank), recording, structure, terms, factor);

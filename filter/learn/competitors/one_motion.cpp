@@ -48,22 +48,18 @@ std::vector<Bank> level_starts(const Recording& recording, const LinearStructure
 }
 
 Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
-                            const Bank& rival, const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options,
-                            const FilterOptions& filter) {
+                            const Bank& rival, const Eigen::MatrixXd& R, Index most_levels,
+                            const BankOptions& options) {
   RefineOptions em = options.em;
   em.one_theta = true;
   em.state_dependent_transition = options.transition == TransitionSource::logit;
   em.restarts = 0;  // random stretches differ in theta, but this model has one theta
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   std::vector<Bank> starts =
-      level_starts(recording, fits.structure,
-                   options.measurement_variance
-                       ? Eigen::MatrixXd(*options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols()))
-                       : R,
-                   most_levels, refine_tuning.modes_kept,
+      level_starts(recording, fits.structure, stated_or(options, R), most_levels, refine_tuning.modes_kept,
                    em.noise_by_input ? fit_noise_factor(recording, fits.structure) : NoiseFactor());
   if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
-  Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, filter);
+  Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, FilterOptions{});
   clear_unidentifiable(learned.bank, global.covariance);
   return learned;
 }

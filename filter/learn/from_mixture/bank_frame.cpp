@@ -50,6 +50,11 @@ Bank bank_frame(const Recording& recording, const LinearStructure& structure, co
   return bank;
 }
 
+Eigen::MatrixXd stated_or(const BankOptions& options, const Eigen::MatrixXd& R) {
+  if (!options.measurement_variance) return R;
+  return *options.measurement_variance * Eigen::MatrixXd::Identity(R.rows(), R.cols());
+}
+
 Mode make_mode(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::MatrixXd& Q,
                const Eigen::MatrixXd& parameter_covariance, const Eigen::VectorXd& standard_error, double weight) {
   Eigen::MatrixXd whole = Eigen::MatrixXd::Zero(structure.dimension(), structure.dimension());

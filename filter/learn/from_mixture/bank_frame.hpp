@@ -6,6 +6,7 @@
 
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
+#include "modebank/learn/options.hpp"
 
 namespace modebank {
 
@@ -14,6 +15,9 @@ namespace modebank {
 /// lagged state is called "wz[k-1]". Throws std::invalid_argument unless R has one row per measured state and the
 /// structure has the states and inputs of the recording.
 Bank bank_frame(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
+
+/// The stated R, if options.measurement_variance is set; otherwise `R`.
+Eigen::MatrixXd stated_or(const BankOptions& options, const Eigen::MatrixXd& R);
 
 /// Names of a bank's states and inputs, from the recording's columns.
 std::vector<std::string> state_names(const Recording& recording, const LinearStructure& structure);

@@ -195,12 +195,9 @@ Bank learn_bank(const Recording& recording, const WindowFits& fits, const Mixtur
   const std::vector<ComponentEstimate> estimates =
       estimate_components({recording, fits, mixture, options.theta}, motion);
 
-  Bank bank = bank_frame(recording, fits.structure, R);
+  Bank bank = bank_frame(recording, fits.structure, stated_or(options, R));
   bank.model = fits.model;
   if (motion) bank.motion_parameters = motion->parameters();
-  if (options.measurement_variance)
-    bank.R = *options.measurement_variance * Eigen::MatrixXd::Identity(bank.R.rows(), bank.R.cols());
-  bank.R = bank.recording_noise();
   const std::vector<Index> kept = options.screen ? screen(fits.structure, estimates, components.weights, bank.screened)
                                                  : all_positions(components.components());
   if (kept.empty()) return bank_of_all(recording, fits, mixture, options, bank, motion);

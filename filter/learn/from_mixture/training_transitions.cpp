@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "ident/base/gram.hpp"
+#include "ident/fit/gram.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {

@@ -32,8 +32,8 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// has expectation one, and Markov's inequality bounds its tail.
 double least_worth(double samples);
 
-/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, a
-/// look-ahead fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
+/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, a look-ahead
+/// fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
 /// which is capped at `most_error`. `samples`: number of samples of each left-out run.
 /// Other rules are worse. The standard error alone accepts additions to three of ten systems
 /// that have none. A t-test over six runs rejects drift worth 0.06 nats in four of five systems.

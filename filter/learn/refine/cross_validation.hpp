@@ -14,8 +14,8 @@
 
 namespace modebank {
 
-/// Scores of training runs that were left out, for every start and number of iterations. For each
-/// start it stores the fit after the best number of iterations. Holds references to its inputs.
+/// Scores of training runs that were left out, for every start and number of iterations. For each start it stores the
+/// fit after the best number of iterations. Holds references to its inputs.
 class CrossValidation {
  public:
   explicit CrossValidation(const RefineInput& in);

@@ -42,8 +42,8 @@ struct LookAheadFit {
 
   Bank climbed(const Recording& recording, const SwitchingPrior& prior, const LookAhead& counted,
                const FreeParameters& free, const Bank& bank) const {
-    return maximise_likelihood({recording, learning_filter(in.filter), prior, in.options.one_theta, counted}, free,
-                               bank, {std::min(most_iterations, in.options.max_iterations), in.options.tolerance})
+    return maximise_likelihood({recording, learning_filter, prior, in.options.one_theta, counted}, free, bank,
+                               {std::min(most_iterations, in.options.max_iterations), in.options.tolerance})
         .bank;
   }
 
@@ -68,7 +68,7 @@ Eigen::VectorXd error_unit(const RefineInput& in, const Bank& bank) {
   for (Index i = 0; i < outputs; ++i) {
     LookAhead of_one{in.options.look_ahead, Eigen::VectorXd::Constant(outputs, infinite)};
     of_one.error_unit(i) = 1.0;
-    const double half_squares = -training_log_likelihood(bank, in.recording, learning_filter(in.filter), of_one);
+    const double half_squares = -training_log_likelihood(bank, in.recording, learning_filter, of_one);
     unit(i) = std::sqrt(2.0 * half_squares / static_cast<double>(in.recording.transitions(Role::train)));
   }
   return unit;

@@ -91,8 +91,7 @@ std::optional<Bank> estimate_with_theta(const LikelihoodTarget& target, const Re
                                         const Bank& bank) {
   const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(bank)), prior);
   FreeParameters free = free_noise(bank);
-  const Eigen::VectorXd least_R = least_measurement_noise(in.fits, refine_tuning);
-  free.theta_unit = all_parameters(bank, sums, prior, in.options.one_theta, false, least_R).theta_unit;
+  free.theta_unit = all_parameters(bank, sums, prior, in.options.one_theta, false, {}).theta_unit;
   if (is_large(bank) && BankCoordinates(bank, free).size() > most_coordinates_of_large_filters) return std::nullopt;
   const double level = target.value(bank) + least_rise(target);
   const Bank start = with_share_as_R(bank, refine_tuning.R_start_share_with_theta);
@@ -148,7 +147,7 @@ class MeasuredSplits {
       exact = towards_one_motion(std::move(exact), split.transitions, switching_model(bank),
                                  exact_.start.theta_transitions, refine_tuning);
       exact = with_logit_prior(std::move(exact), split.transitions, exact_.logit_prior);
-      const LikelihoodTarget target{split.runs.training, learning_filter(in_.filter),
+      const LikelihoodTarget target{split.runs.training, learning_filter,
                                     prior_with_states_unknown(exact, bank, refine_tuning), in_.options.one_theta};
       bank = maximise_everything(target, in_, split.transitions, bank, with_R).bank;
     });
@@ -253,7 +252,7 @@ void go_on(const RefineInput& in, const SwitchingPrior& exact, std::optional<Mea
     stage.score = after;
     splits.emplace(std::move(further));
   }
-  const LikelihoodTarget target{in.recording, learning_filter(in.filter), fit.prior, in.options.one_theta};
+  const LikelihoodTarget target{in.recording, learning_filter, fit.prior, in.options.one_theta};
   LikelihoodMaximum maximum = maximise_everything(target, in, in.transitions, fit.bank, fit.R_estimated);
   stage.iterations += maximum.iterations;
   stage.end = maximum.end;

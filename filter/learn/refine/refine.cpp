@@ -102,7 +102,7 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   result.objective = fit.objective;
   chosen.bank = bank_of_fit(in, fit);
   chosen = fit_with_measurement_noise(in, validation, chosen, result.measurement);
-  chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, learning_filter(filter), chosen.bank);
+  chosen.bank = with_errors(in, fit, chosen.prior, chosen.R_estimated, chosen.bank);
   if (std::optional<Fit> ahead = fit_looking_ahead(in, validation, chosen, result.look_ahead))
     chosen = std::move(*ahead);
   result.bank = std::move(chosen.bank);

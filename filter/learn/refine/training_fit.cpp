@@ -53,21 +53,15 @@ Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit) {
 }
 
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
-                 const FilterOptions& filter, const Bank& bank) {
+                 const Bank& bank) {
   const SwitchingSums complete = sum_transitions(in.transitions, fit.posterior, prior);
   const FreeParameters free = all_parameters(bank, complete, prior, in.options.one_theta, estimated_R,
                                              least_measurement_noise(in.fits, refine_tuning));
-  return with_standard_errors({in.recording, filter, prior, in.options.one_theta}, free, complete, bank);
+  return with_standard_errors({in.recording, learning_filter, prior, in.options.one_theta}, free, complete, bank);
 }
 
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning) {
   return tuning.least_R_share * fits.global.noise_variance();
-}
-
-FilterOptions learning_filter(const FilterOptions& filter) {
-  FilterOptions learning = filter;
-  learning.variant = FilterVariant::imm;
-  return learning;
 }
 
 }  // namespace modebank

@@ -50,13 +50,12 @@ Bank bank_of_fit(const RefineInput& in, const TrainingFit& fit);
 /// The bank of this fit with standard errors (likelihood/standard_errors.hpp), in the filter whose likelihood the fit
 /// maximises (learning_filter). `estimated_R`: whether R is among the estimated parameters.
 Bank with_errors(const RefineInput& in, const TrainingFit& fit, const SwitchingPrior& prior, bool estimated_R,
-                 const FilterOptions& filter, const Bank& bank);
+                 const Bank& bank);
 
 /// The smallest R in refinement, n_y. It is negligible.
 Eigen::VectorXd least_measurement_noise(const WindowFits& fits, const RefineTuning& tuning);
 
-/// The filter whose likelihood is maximised with measurement noise: the bank's filter as an IMM that does not adapt
-/// parameters.
-FilterOptions learning_filter(const FilterOptions& filter);
+/// The filter whose likelihood is maximised with measurement noise, whatever the variant of the bank's filter.
+inline constexpr FilterOptions learning_filter{FilterVariant::imm};
 
 }  // namespace modebank

@@ -29,12 +29,6 @@ template <class Out, class A, class B>
     }
 }
 
-/// out = a b'. Requires an inner size >= 1; `out` must not alias.
-template <class Out, class A, class B>
-void multiply_transposed(Out& out, const A& a, const B& b) {
-  multiply_transposed(out, a, b, a.cols());
-}
-
 /// out = a b. Rows i >= `full` of `a` are shifts: row i is e_{i - full}'. b is zero outside its first `inner` rows and
 /// columns. Only the first `inner` columns of `out` are written. The bits equal those of `multiply` if b is finite.
 /// With full = a.rows(), `a` may be any matrix.

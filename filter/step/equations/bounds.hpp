@@ -2,8 +2,7 @@
 
 #include <cmath>
 
-/// Limits that keep a filter's arithmetic stable for any input. The equations and the vector kernels (which do not use
-/// Eigen) share these limits.
+/// Limits that keep a filter's arithmetic stable for any input.
 namespace modebank {
 
 /// Lower bound of mode probabilities after a measurement, so that every mode can recover. Probabilities are then

@@ -179,7 +179,7 @@ void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vec
   const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
   for (std::size_t h = 0; h < step.kalman.size(); ++h) {
     step.kalman[h].observe(sensor, y);
-    step.kalman[h].correct(sensor, estimates[h]);
+    step.kalman[h].correct(sensor, y, estimates[h]);
     step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
   }
 }

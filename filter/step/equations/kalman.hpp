@@ -33,8 +33,6 @@ struct Gaussian {
 template <int N, int NY>
 struct KalmanStep {
   Gaussian<N> predicted;                                ///< x, P before the measurement
-  Eigen::Matrix<double, N, N> process_noise;            ///< Q in the layout in which it is added to P
-  Eigen::Matrix<double, NY, 1> measured;                ///< y of an exact sensor
   Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
   Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e; its variance is cholesky.D
   Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
@@ -43,8 +41,6 @@ struct KalmanStep {
 
   KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
       : predicted(n),
-        process_noise(n, n),
-        measured(n_y),
         innovation(n_y),
         decorrelated(n_y),
         innovation_covariance(n_y, n_y),
@@ -60,7 +56,7 @@ struct KalmanStep {
   /// derivative of g at the mean. This is an extended Kalman filter, which is exact for P = 0.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u, double noise_factor = 1.0);
+               const U& u, double noise_factor);
   /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
   /// model, or its part for the available signals.
   template <class Sensor>
@@ -69,8 +65,8 @@ struct KalmanStep {
   template <class Sensor, class Y>
   void observe(const Sensor& sensor, const Y& y);
   /// State after the measurement, covariance in Joseph's form.
-  template <class Sensor>
-  void correct(const Sensor& sensor, Gaussian<N>& posterior);
+  template <class Sensor, class Y>
+  void correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
   /// log N(residual; 0, S) for any residual. `residual` is decorrelated in place.
   template <class Vector>
   double log_normal(Vector& residual) const;
@@ -85,8 +81,8 @@ struct KalmanStep {
   Eigen::Matrix<double, N, N> bent_F_;
 
   /// Copies the rows that an exact sensor measures. A correction would add rounding errors.
-  template <class Sensor>
-  void take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const;
+  template <class Sensor, class Y>
+  static void take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
   /// Adds the terms to the predicted mean, and their derivatives to F.
   template <class U>
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
@@ -143,9 +139,8 @@ void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY
   propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
   for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
     predicted.mean(i) = from.mean(i - model.full_rows);
-  process_noise = noise_factor * mode.Q;
   const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
-  predicted.covariance = process_noise;
+  predicted.covariance = noise_factor * mode.Q;
   predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
   if (from.uncertain > 0) {
     const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
@@ -185,7 +180,6 @@ template <class Sensor, class Y>
 void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
   small::multiply(innovation, sensor.C, predicted.mean);
   innovation = y - innovation;
-  if (sensor.exact) measured = y;
   decorrelated = innovation;
   log_density = log_normal(decorrelated);
 }
@@ -199,14 +193,14 @@ double KalmanStep<N, NY>::log_normal(Vector& residual) const {
 }
 
 template <int N, int NY>
-template <class Sensor>
-void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
   posterior.uncertain = predicted.uncertain;
   if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
     posterior.mean = predicted.mean;
     posterior.covariance.setZero();
     posterior.uncertain = 0;
-    return take_exactly(sensor, posterior);
+    return take_exactly(sensor, y, posterior);
   }
   for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
     gain_.row(i) = PCt_.row(i);
@@ -225,14 +219,14 @@ void KalmanStep<N, NY>::correct(const Sensor& sensor, Gaussian<N>& posterior) {
   small::add_symmetric_product(posterior.covariance, NY_, gain_);
   if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
   bound_variances(predicted, posterior);
-  if (sensor.exact) take_exactly(sensor, posterior);
+  if (sensor.exact) take_exactly(sensor, y, posterior);
 }
 
 template <int N, int NY>
-template <class Sensor>
-void KalmanStep<N, NY>::take_exactly(const Sensor& sensor, Gaussian<N>& posterior) const {
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
   const Eigen::Index seen = sensor.seen_columns;
-  posterior.mean.head(seen) = measured;
+  posterior.mean.head(seen) = y;
   posterior.covariance.topRows(seen).setZero();
   posterior.covariance.leftCols(seen).setZero();
 }

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/interval_mass.hpp"
@@ -66,9 +65,6 @@ struct CombinedInnovation {
   Eigen::VectorXd residual_;
   small::Ldl<Eigen::Dynamic> cholesky_;
 };
-
-/// Phi(x). The relative error is small far into the lower tail.
-inline double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 
 /// A mixture of normal distributions of one signal.
 struct NormalMixture {

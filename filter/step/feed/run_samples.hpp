@@ -20,63 +20,20 @@ inline double sample_time_s(const Trajectory& run, Eigen::Index k) {
   return run.time_s.size() > 0 ? run.time_s(k) : not_a_number;
 }
 
-/// Samples of a run at distances of one model step. Only the first sample may be further from its predecessor.
-struct SampleStretch {
-  Eigen::Index first = 0;                      ///< index of the first sample in the run
-  Eigen::Index steps = 1;                      ///< number of model steps to the first sample
-  Eigen::Ref<const Eigen::MatrixXd> inputs;    ///< acting inputs x samples; column k acts on the step to sample k
-  Eigen::Ref<const Eigen::MatrixXd> measured;  ///< n_y x samples
-};
-
-/// The samples of a run, prepared for a filter.
-class RunSamples {
- public:
-  RunSamples(const Bank& bank, const Trajectory& run)
-      : run_(run), feed_(bank), acting_(bank.structure.acting_inputs(), most_at_once) {}
-
-  /// Calls visit(feed, k, starts) for every sample k from the first start on. `starts`: whether the filter (re)starts
-  /// at this sample.
-  template <class Visit>
-  void for_each(Visit visit) {
-    bool started = false;
-    for (Eigen::Index k = 0; k < run_.samples(); ++k) {
-      feed_.push(sample_time_s(run_, k), run_.input.col(k).data(), run_.state.col(k).data());
-      started = started && feed_.steps() <= longest_gap_steps;
-      const bool starts = !started && feed_.can_start();
-      if (started || starts) visit(feed_, k, starts);
-      started = started || starts;
-    }
+/// Prepares the samples of a run for a filter. Calls visit(feed, k, starts) for every sample k from the first start on.
+/// `starts`: whether the filter (re)starts at this sample.
+template <class Visit>
+void for_each_sample(const Bank& bank, const Trajectory& run, Visit visit) {
+  SampleFeed feed(bank);
+  bool started = false;
+  for (Eigen::Index k = 0; k < run.samples(); ++k) {
+    feed.push(sample_time_s(run, k), run.input.col(k).data(), run.state.col(k).data());
+    started = started && feed.steps() <= longest_gap_steps;
+    const bool starts = !started && feed.can_start();
+    if (started || starts) visit(feed, k, starts);
+    started = started || starts;
   }
-
-  /// Visits many samples at a time. Calls start(feed) at samples where the filter (re)starts, and follow(stretch) for
-  /// the samples between.
-  template <class Start, class Follow>
-  void for_each_stretch(Start start, Follow follow) {
-    Eigen::Index first = 0, count = 0, steps = 1;
-    const auto flush = [&] {
-      if (count > 0) follow(SampleStretch{first, steps, acting_.leftCols(count), run_.state.middleCols(first, count)});
-      count = 0;
-    };
-    for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
-      if (starts || feed.steps() != 1 || count == most_at_once) flush();
-      if (starts) return start(feed);
-      if (count == 0) {
-        first = k;
-        steps = feed.steps();
-      }
-      const double* v = feed.inputs().data();
-      double* to = acting_.data() + acting_.rows() * count++;
-      for (Eigen::Index i = 0; i < acting_.rows(); ++i) to[i] = v[i];
-    });
-    flush();
-  }
-
- private:
-  static constexpr Eigen::Index most_at_once = 128;
-  const Trajectory& run_;
-  SampleFeed feed_;
-  Eigen::MatrixXd acting_;  ///< acting inputs of the present stretch
-};
+}
 
 /// One moment of a filtered run: a sample, or a model step between two distant samples.
 struct Instant {
@@ -92,7 +49,7 @@ struct RunInstants {
 
   RunInstants(const Bank& bank, const Trajectory& run) {
     std::vector<Eigen::VectorXd> acting;
-    RunSamples(bank, run).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+    for_each_sample(bank, run, [&](const SampleFeed& feed, Eigen::Index k, bool starts) {
       for (Eigen::Index i = 1; !starts && i < feed.steps(); ++i) add({}, feed.inputs(), acting);
       add({k, starts, starts ? Eigen::VectorXd(feed.start()) : Eigen::VectorXd()}, feed.inputs(), acting);
     });

@@ -114,7 +114,7 @@ TEST(BankWithTerms, RefusesCoefficientsOfOtherSizes) {
 
 TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
   const Bent bent;
-  const Bank bank = learn_nonlinear(bent.runs(8, 3), bent.structure, bent.terms, RefineOptions(), FilterOptions());
+  const Bank bank = learn_nonlinear(bent.runs(8, 3), bent.structure, bent.terms, RefineOptions());
   const Mode& mode = bank.modes.front();
   const Eigen::Vector2d theta(-0.2, 0.2);
   for (Index i = 0; i < 2; ++i) {
@@ -126,7 +126,7 @@ TEST(LearnNonlinear, RecoversCoefficientsWithinTheirErrors) {
 
 /// Log score [nats/sample] of a bank on runs with different noise. The bank is learned from runs like `like`.
 double score_on(double sd, const Bent& like) {
-  const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions(), FilterOptions());
+  const Bank bank = learn_nonlinear(like.runs(8, 3), like.structure, like.terms, RefineOptions());
   Bent other = like;
   other.sd = sd;
   double sum = 0.0, samples = 0.0;
@@ -154,7 +154,7 @@ TEST(LearnNonlinear, TakesLagsAndDelaysAsTheyAre) {
   terms.direction = MatrixXd::Zero(5, 2);
   terms.direction(0, 0) = terms.direction(3, 1) = 1.0;  // the previous sample of u is the acting input
   const Recording recording = bent.runs(8, 4);
-  const Bank bank = learn_nonlinear(recording, bent.structure, terms, RefineOptions(), FilterOptions());
+  const Bank bank = learn_nonlinear(recording, bent.structure, terms, RefineOptions());
   const RunEvaluation said = evaluate_run(bank, recording.runs.front(), FilterOptions());
   const Trajectory& run = recording.runs.front();
   for (Index k = 3; k < run.samples(); ++k)

@@ -228,7 +228,7 @@ TEST(Sizes, LaggedBanksToo) {
       FilterStep<N, 1> step(model);
       FilterState<N> state = initial_state(model);
       double total = 0.0;
-      RunSamples(bank, run).for_each([&](const SampleFeed& feed, Eigen::Index k, bool starts) {
+      for_each_sample(bank, run, [&](const SampleFeed& feed, Eigen::Index k, bool starts) {
         if (starts) return start(model, feed.start(), state);
         ASSERT_EQ(feed.steps(), 1);
         predict(model, state, feed.inputs(), step);

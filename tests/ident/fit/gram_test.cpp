@@ -1,5 +1,5 @@
 // Sums of outer products and singular values, compared with the plain products.
-#include "ident/base/gram.hpp"
+#include "ident/fit/gram.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,7 +1,7 @@
 // Sums of outer products, computed block by block in register tiles.
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "ident/base/gram.cpp"
-#include "ident/base/gram.hpp"
+#define HWY_TARGET_INCLUDE "ident/fit/gram.cpp"
+#include "ident/fit/gram.hpp"
 
 #include <hwy/aligned_allocator.h>
 #include <hwy/foreach_target.h>
