@@ -74,7 +74,7 @@ MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_mod
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, refine,
                     em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant)
-MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, start, method, paths, seed)
+MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, free_run, seed)
 
 MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)

@@ -12,35 +12,10 @@
 #include "filter/step/equations/predicted_mixture.hpp"
 #include "filter/step/feed/run_samples.hpp"
 
-/// Predictions without measurements, from a filter's state and with known inputs. All such predictions use this header.
-/// A forecast is an object with start(...) and step(acting inputs). There are BankForecast (moments of a bank),
-/// DriftingForecast (running noise) and SamplePaths (random paths). look_ahead applies a forecast to a recorded run;
-/// Forecaster applies a forecast to planned inputs.
+/// Predictions without measurements, from a filter's state and with known inputs: BankForecast (moments of a bank) and
+/// DriftingForecast (running noise). Forecaster applies them to planned inputs, judge/run/forecast.hpp to recorded
+/// runs.
 namespace modebank {
-
-/// Steps `forecast`, which was started at moment t of a run, through the following moments. Calls arrive(ahead, k) at
-/// each sample k, which is the `ahead`-th sample after t. Ends if `arrive` returns false or the stretch ends.
-template <class Forecast, class Arrive>
-void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, Arrive arrive) {
-  Eigen::Index ahead = 0;
-  while (run.continues(t)) {
-    forecast.step(run.inputs.col(++t));
-    const Eigen::Index k = run.instants[static_cast<std::size_t>(t)].sample;
-    if (k >= 0 && !arrive(++ahead, k)) return;
-  }
-}
-
-/// Calls look_ahead up to the longest of `horizons` (samples ahead, ascending). Calls arrive(i, k) at horizon i.
-template <class Forecast, class Arrive>
-void look_ahead(Forecast& forecast, const RunInstants& run, Eigen::Index t, const std::vector<Eigen::Index>& horizons,
-                Arrive arrive) {
-  if (horizons.empty()) return;
-  std::size_t next = 0;
-  look_ahead(forecast, run, t, [&](Eigen::Index ahead, Eigen::Index k) {
-    if (ahead == horizons[next]) arrive(next++, k);
-    return next < horizons.size();
-  });
-}
 
 /// Forecast of a bank by moments: one Gaussian per mode. As in the filter, the Gaussians are mixed and propagated in
 /// each step. If the transition matrix is constant, every mode's probability, mean and covariance are exact, because

@@ -11,10 +11,9 @@ namespace modebank::test {
 
 using Eigen::Index;
 
-inline FreeRunOptions after(Index samples, FreeRunMethod method = FreeRunMethod::moments, Index paths = 400) {
+inline FreeRunOptions after(Index samples, Index paths = 0) {
   FreeRunOptions options;
   options.samples = samples;
-  options.method = method;
   options.paths = paths;
   return options;
 }

@@ -104,17 +104,6 @@ std::vector<Option> filter_options() {
       numeric("filter.simulate_horizon", between(0, 1'000'000'000), "samples",
               "length of a free run; 0: to the end of the run", MODEBANK_FIELD(scoring.free_run.horizon))
           .touch("when runs are long: the length over which your simulations must be good", competitor_scores),
-      words("filter.simulate_start",
-            "start of a free run: the filter's estimate after the measured samples (estimated), or the last measured "
-            "sample alone (fixed)",
-            MODEBANK_FIELD(scoring.free_run.start))
-          .touch("fixed, for comparison with benchmarks that start a free run from a measurement", competitor_scores),
-      words("filter.simulate_method",
-            "computation of a free run: one Gaussian per mode (moments; exact for a constant transition matrix), or "
-            "sample paths, which bank.transition = logit always uses",
-            MODEBANK_FIELD(scoring.free_run.method))
-          .touch("paths, when a mode's distribution is not Gaussian and the band must show it; it takes longer",
-                 competitor_scores),
   };
 }
 

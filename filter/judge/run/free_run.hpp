@@ -12,10 +12,10 @@
 
 namespace modebank {
 
-/// Method of a bank's free run. moments: probability, mean and covariance of every mode, exact for a constant
-/// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths. Bands are
-/// quantiles of the paths. Densities use the moments of each mode's paths, treated as Gaussian. Both have sampling
-/// noise, because the number of paths is finite.
+/// How a free run was computed. moments: probability, mean and covariance of every mode, exact for a constant
+/// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths, as a bank
+/// needs whose transitions depend on the state (SamplePaths); their number is finite, so bands and densities have
+/// sampling noise.
 enum class FreeRunMethod { moments, paths };
 
 template <>
@@ -23,22 +23,11 @@ struct EnumNames<FreeRunMethod> {
   static constexpr Names<2> values{"moments", "paths"};
 };
 
-/// Start of a free run. estimated: the filter's estimate after the measured samples. fixed: the last measured sample
-/// alone, as the first measurement of a filter.
-enum class FreeRunStart { estimated, fixed };
-
-template <>
-struct EnumNames<FreeRunStart> {
-  static constexpr Names<2> values{"estimated", "fixed"};
-};
-
 struct FreeRunOptions {
   Eigen::Index samples = 0;  ///< number of measured samples at the beginning; 0 turns free runs off
   Eigen::Index horizon = 0;  ///< number of samples to predict after the measured ones; 0 predicts to the end of the run
-  FreeRunStart start = FreeRunStart::estimated;
-  FreeRunMethod method = FreeRunMethod::moments;
-  Eigen::Index paths = 400;
-  std::uint64_t seed = 1;  ///< seed of the paths; each run derives its own generator from its name
+  Eigen::Index paths = 0;    ///< number of sample paths; 0: by moments
+  std::uint64_t seed = 1;    ///< seed of the paths; each run derives its own generator from its name
 
   bool operator==(const FreeRunOptions&) const = default;
 };
@@ -49,10 +38,12 @@ inline Eigen::Index fewest_start_samples(const LinearStructure& structure) { ret
 /// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; a value is NaN (a
 /// mode is -1) if the sample was not predicted. The free run restarts after each gap at which filters restart.
 struct FreeRun {
+  FreeRunMethod method = FreeRunMethod::moments;
   Eigen::MatrixXd mean;          ///< n_y x N
   Eigen::MatrixXd deviation;     ///< n_y x N, standard deviation of the measurement about `mean`
   Eigen::MatrixXd lower, upper;  ///< n_y x N, central 95 % band
-  Eigen::MatrixXd pit;  ///< n_y x N, log density of each signal separately; NaN unless the measurement is complete
+  Eigen::MatrixXd
+      pit;  ///< n_y x N, P(y_i <= measurement) of each signal by itself; NaN unless the measurement is complete
   Eigen::VectorXd log_density;     ///< N, joint log density of the measurement [nats]
   Eigen::VectorXi mode;            ///< N, most probable mode
   Eigen::Index lost_paths = 0;     ///< number of paths that diverged and were removed

@@ -2,12 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
-#include "filter/judge/run/drifting.hpp"
-#include "filter/step/feed/run_samples.hpp"
-#include "filter/step/forecast.hpp"
+#include "filter/judge/run/forecast.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -16,43 +15,19 @@ namespace {
 
 using Eigen::Index;
 
-/// Predicts ahead from the filter's state at one moment.
-template <int N, int NY>
-class HorizonScores {
- public:
-  HorizonScores(const FilterModel<N, NY>& model, const RunInstants& instants, const Trajectory& run,
-                HorizonEvaluation& out)
-      : instants_(instants), run_(run), out_(out), forecast_(model) {}
-
-  void from(Index t, const FilterState<N>& state) {
-    forecast_.start(state);
-    look_ahead(forecast_, instants_, t, out_.horizons, [&](std::size_t horizon, Index k) { score(horizon, k); });
-  }
-
- private:
-  const RunInstants& instants_;
-  const Trajectory& run_;
-  HorizonEvaluation& out_;
-  BankForecast<N, NY> forecast_;
-
-  void score(std::size_t horizon, Index k) {
-    const auto y = run_.state.col(k);
-    if (missing_entries(y) > 0) return;
-    out_.log_density(static_cast<Index>(horizon), k) = forecast_.observe(y, out_.error[horizon].col(k));
-    for (Index i = 0; i < y.size(); ++i) out_.pit[horizon](i, k) = forecast_.signal(i).probability(y(i));
-  }
-};
-
-template <int N, int NY>
-void score_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options, HorizonEvaluation& out) {
-  const FilterModel<N, NY> model(bank, options);
+/// One sample ahead by running noise, the prediction is the filter's own: its levels have different means.
+void take_from_filter(const Bank& bank, const Trajectory& run, HorizonEvaluation& out) {
   const RunInstants instants(bank, run);
-  FilterStep<N, NY> step(model);
-  FilterState<N> state = initial_state(model);
-  HorizonScores<N, NY> look(model, instants, run, out);
+  DriftingRecursion recursion(bank);
+  Eigen::VectorXd weight;
   for (Index t = 0; t < instants.count(); ++t) {
-    step_to(model, instants, t, run, state, step);
-    if (instants.instants[static_cast<std::size_t>(t)].sample >= 0) look.from(t, state);
+    const double log_density = follow(instants, t, run, recursion);
+    const Index k = instants.instants[static_cast<std::size_t>(t)].sample;
+    if (k < 0 || std::isnan(out.log_density(0, k))) continue;
+    recursion.weigh_levels(0, weight);
+    for (Index i = 0; i < out.error[0].rows(); ++i) out.pit[0](i, k) = recursion.probability(i, 0.0, weight);
+    out.error[0].col(k) = recursion.innovation();
+    out.log_density(0, k) = log_density;
   }
 }
 
@@ -72,11 +47,15 @@ HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index s
 
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                     std::vector<Index> horizons) {
-  if (!bank.running_noise.empty()) return drifting_horizons(bank, run, std::move(horizons));
-  check_run(bank, run);
+  const std::unique_ptr<ForecastingFilter> filter = forecasting_filter(bank, run, options);
   HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
-  with_sizes(bank.structure.dimension(), bank.C.rows(),
-             [&]<int N, int NY>() { score_horizons<N, NY>(bank, run, options, out); });
+  if (out.horizons.empty()) return out;
+  filter->predict_run(out.horizons, [&](Forecast& forecast, std::size_t h, Index k) {
+    const auto y = run.state.col(k);
+    out.log_density(static_cast<Index>(h), k) = forecast.observe(y, out.error[h].col(k));
+    for (Index i = 0; i < y.size(); ++i) out.pit[h](i, k) = forecast.probability(i, y(i));
+  });
+  if (!bank.running_noise.empty() && out.horizons.front() == 1) take_from_filter(bank, run, out);
   return out;
 }
 

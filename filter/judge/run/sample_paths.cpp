@@ -1,45 +1,36 @@
 #include "filter/judge/run/sample_paths.hpp"
 
+#include <algorithm>
 #include <boost/random/normal_distribution.hpp>
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
 
-#include "filter/step/equations/bounds.hpp"
+#include "filter/step/equations/predicted_mixture.hpp"
 #include "ident/base/covariance.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
 using Eigen::Index;
 
-namespace {
-
-/// Mode probabilities by the bank's transition matrix. If they depend on the state, they are evaluated at the state of
-/// each path.
-TransitionRow bank_row(const Bank& bank) {
-  if (bank.mode_count() == 1)
-    return [](Index mode, const auto&, const auto&, Eigen::VectorXd& row) { row.setZero()(mode) = 1.0; };
-  return [T = bank.transition.matrix(), logit = bank.transition_logit,
-          at = TransitionWorkspace(bank.mode_count(), bank.transition_logit)](
-             Index mode, const auto& state, const auto& inputs, Eigen::VectorXd& row) mutable {
-    row = transition_at(T, logit, state, inputs, at).row(mode).transpose();
-  };
-}
-
-}  // namespace
-
-SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed, TransitionRow row)
+SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed)
     : bank_(bank),
+      R_(bank.recording_noise()),
+      R_root_(covariance_root(R_)),
       paths_(paths),
-      row_(row ? std::move(row) : bank_row(bank_)),
       generator_(seed),
+      share_(bank.mode_count()),
       probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
-      next_(bank.structure.dimension()) {
+      next_(bank.structure.dimension()),
+      transition_(bank.mode_count(), bank.transition_logit) {
   if (paths < 2) throw std::invalid_argument("at least two sample paths, not " + std::to_string(paths));
+  for (const Mode& mode : bank_.modes) noise_root_.push_back(covariance_root(mode.Q));
 }
 
+/// Adds a draw from N(0, scale^2 root root').
 void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale) {
   boost::random::normal_distribution<double> standard;
   normal_.resize(root.cols());
@@ -55,16 +46,22 @@ Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
   return mode;
 }
 
+/// If mode probabilities depend on the state, they are those at the state of the path.
+Index SamplePaths::draw_next_mode(Index mode, const Vector& state, const Vector& inputs) {
+  if (bank_.mode_count() == 1)
+    probability_.setOnes();
+  else
+    probability_ = transition_at(bank_.transition.matrix(), bank_.transition_logit, state, inputs, transition_)
+                       .row(mode)
+                       .transpose();
+  return draw_mode(probability_);
+}
+
 void SamplePaths::start(const FilterMemory& origin) {
   const Index n = next_.size();
   std::vector<Eigen::MatrixXd> start_root;
-  noise_.clear();
-  noise_root_.clear();
-  for (Index j = 0; j < bank_.mode_count(); ++j) {
+  for (Index j = 0; j < bank_.mode_count(); ++j)
     start_root.push_back(covariance_root(origin.covariances.col(j).reshaped(n, n)));
-    noise_.emplace_back(bank_.modes[static_cast<std::size_t>(j)].Q);
-    noise_root_.push_back(covariance_root(noise_.back()));
-  }
   states_.resize(n, paths_);
   predicted_.resize(n, paths_);
   modes_.resize(static_cast<std::size_t>(paths_));
@@ -85,7 +82,7 @@ void SamplePaths::add_terms(Index mode, const Vector& state, const Vector& input
 }
 
 Eigen::MatrixXd SamplePaths::step_noise(Index mode, const std::vector<Index>& in_mode) const {
-  return noise_factor_(in_mode).mean() * noise_[static_cast<std::size_t>(mode)];
+  return noise_factor_(in_mode).mean() * bank_.modes[static_cast<std::size_t>(mode)].Q;
 }
 
 void SamplePaths::step(const Vector& inputs) {
@@ -93,8 +90,7 @@ void SamplePaths::step(const Vector& inputs) {
   noise_factor_.resize(count());
   for (Index i = 0; i < count(); ++i) {
     Index& mode = modes_[static_cast<std::size_t>(i)];
-    row_(mode, states_.col(i), inputs, probability_);
-    mode = draw_mode(probability_);
+    mode = draw_next_mode(mode, states_.col(i), inputs);
     const LinearModel& model = bank_.modes[static_cast<std::size_t>(mode)].model;
     propagate(model.A, model.B, model.c, states_.col(i), inputs, next_);
     if (!bank_.terms.empty()) add_terms(mode, states_.col(i), inputs);
@@ -115,6 +111,86 @@ void SamplePaths::keep(const std::vector<Index>& which) {
   states_ = states_(Eigen::all, which).eval();
   predicted_ = predicted_(Eigen::all, which).eval();
   noise_factor_ = noise_factor_(which).eval();
+}
+
+void SamplePaths::arrive(Index) {
+  Eigen::MatrixXd measured = bank_.C * states_;
+  for (Index i = 0; i < measured.cols(); ++i) add_draw(R_root_, measured.col(i));
+  sorted_ = measured.transpose();
+  for (Index s = 0; s < sorted_.cols(); ++s) std::sort(sorted_.col(s).begin(), sorted_.col(s).end());
+  share_.setZero();
+  for (const Index mode : modes_) share_(mode) += 1.0;
+  if (count() > 0) share_ /= static_cast<double>(count());
+}
+
+Eigen::VectorXd SamplePaths::mean() const {
+  if (count() == 0) return Eigen::VectorXd::Constant(bank_.C.rows(), not_a_number);
+  return bank_.C * predicted_.rowwise().mean();
+}
+
+Eigen::VectorXd SamplePaths::standard_deviation() const {
+  if (count() < 2) return Eigen::VectorXd::Constant(bank_.C.rows(), not_a_number);
+  const Eigen::MatrixXd y = bank_.C * states_;
+  const Eigen::MatrixXd centred = y.colwise() - y.rowwise().mean();
+  const Eigen::ArrayXd variance = centred.array().square().rowwise().sum() / static_cast<double>(y.cols() - 1);
+  return (variance + R_.diagonal().array()).sqrt();
+}
+
+// The i-th of M sorted values is the quantile at i / (M + 1), with linear interpolation. A further path lies below this
+// value with probability i / (M + 1).
+
+double SamplePaths::probability(Index i, double y) const {
+  const auto values = sorted_.col(i);
+  const double M = static_cast<double>(values.size());
+  const Index below = std::lower_bound(values.begin(), values.end(), y) - values.begin();
+  double rank = static_cast<double>(below);
+  if (below == 0)
+    rank = 0.5;
+  else if (below == values.size())
+    rank = M + 0.5;
+  else if (const double gap = values(below) - values(below - 1); gap > 0.0)
+    rank += (y - values(below - 1)) / gap;
+  return rank / (M + 1.0);
+}
+
+double SamplePaths::quantile(Index i, double p) const {
+  const auto values = sorted_.col(i);
+  if (values.size() == 0) return not_a_number;
+  const double place =
+      std::clamp(p * static_cast<double>(values.size() + 1) - 1.0, 0.0, static_cast<double>(values.size() - 1));
+  const auto below = static_cast<Index>(place);
+  const Index above = std::min(below + 1, values.size() - 1);
+  return values(below) + (place - static_cast<double>(below)) * (values(above) - values(below));
+}
+
+/// Log density of an error with covariance S; for rounded signals with the masses of their intervals.
+double SamplePaths::log_density_of_mode(Eigen::VectorXd error, const Eigen::MatrixXd& S) const {
+  small::Ldl<Eigen::Dynamic> factor(S.rows());
+  factor.factorise(S);
+  factor.decorrelate(error);
+  double sum = 0.0;
+  for (Index i = 0; i < error.size(); ++i)
+    sum += ModeSignal{error(i), factor.D(i)}.log_density(bank_.is_quantised() ? bank_.quantum(i) : 0.0);
+  return sum;
+}
+
+double SamplePaths::observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) {
+  error = y - mean();
+  const Eigen::MatrixXd predicted = bank_.C * predicted_;
+  Eigen::VectorXd log_likelihood = Eigen::VectorXd::Constant(share_.size(), lowest_log_density), posterior = share_;
+  for (Index j = 0; j < share_.size(); ++j) {
+    std::vector<Index> in_mode;
+    for (Index i = 0; i < count(); ++i)
+      if (modes_[static_cast<std::size_t>(i)] == j) in_mode.push_back(i);
+    if (in_mode.empty()) continue;
+    Eigen::MatrixXd centred = predicted(Eigen::all, in_mode);
+    const Eigen::VectorXd mean = centred.rowwise().mean();
+    centred.colwise() -= mean;
+    const Eigen::MatrixXd S = centred * centred.transpose() / static_cast<double>(in_mode.size()) +
+                              bank_.C * step_noise(j, in_mode) * bank_.C.transpose() + R_;
+    log_likelihood(j) = log_density_of_mode(y - mean, S);
+  }
+  return count() > 0 ? bayes(share_, log_likelihood, posterior) : not_a_number;
 }
 
 }  // namespace modebank

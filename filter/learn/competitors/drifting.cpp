@@ -3,10 +3,11 @@
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/forecast.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -62,26 +63,28 @@ void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) 
   bank.drift.tuning = {scores.log_score(best), scores.samples};
 }
 
-std::vector<DriftingForecasts> training_forecasts(const Bank& bank, const Recording& recording,
-                                                  const std::vector<Index>& horizons) {
+/// Per training run and horizon.
+using TrainingErrors = std::vector<std::vector<LevelErrors>>;
+
+TrainingErrors training_errors(const Bank& bank, const Recording& recording, const std::vector<Index>& horizons) {
   std::vector<const Trajectory*> runs;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::train) runs.push_back(&run);
-  std::vector<DriftingForecasts> forecasts(runs.size());
+  TrainingErrors errors(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { forecasts[i] = drifting_forecasts(bank, *runs[i], horizons); });
-  return forecasts;
+                    [&](std::size_t i) { errors[i] = level_errors(bank, *runs[i], horizons); });
+  return errors;
 }
 
 /// The grid position of the factor that makes the errors most likely. If several are equally likely, the nearest to
 /// factor 1.
-Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts>& runs, std::size_t horizon) {
+Index best_factor(const StudentNoise& noise, const TrainingErrors& runs, std::size_t horizon) {
   const auto gain = [&](Index i) {
     const double factor = std::exp2(0.25 * static_cast<double>(i));
     double sum = 0.0;
-    for (const DriftingForecasts& run : runs)
-      for (Index k = 0; k < run.whitened[horizon].cols(); ++k)
-        if (!std::isnan(run.whitened[horizon](0, k))) sum += widening_gain(noise, run, horizon, k, factor);
+    for (const std::vector<LevelErrors>& run : runs)
+      for (Index k = 0; k < run[horizon].whitened.cols(); ++k)
+        if (!std::isnan(run[horizon].whitened(0, k))) sum += run[horizon].widening_gain(noise, k, factor);
     return sum;
   };
   Index best = 0;
@@ -99,17 +102,17 @@ Index best_factor(const StudentNoise& noise, const std::vector<DriftingForecasts
 
 }  // namespace
 
-void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Index>& horizons) {
+void choose_horizon_factors(Bank& bank, const Recording& recording, std::vector<Index> horizons) {
   bank.running_noise.horizon_factor.clear();
-  const std::vector<DriftingForecasts> runs = training_forecasts(bank, recording, horizons);
-  if (runs.empty()) return;
-  const std::vector<Index>& ascending = runs.front().predictions.horizons;
+  std::erase(horizons, Index{1});
+  std::sort(horizons.begin(), horizons.end());
+  horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
+  if (horizons.empty()) return;
+  const TrainingErrors runs = training_errors(bank, recording, horizons);
   const StudentNoise noise(bank.running_noise.nu);
-  for (std::size_t h = 0; h < ascending.size(); ++h) {
-    if (ascending[h] == 1) continue;
-    const Index best = best_factor(noise, runs, h);
-    bank.running_noise.horizon_factor.emplace_back(ascending[h], std::exp2(0.25 * static_cast<double>(best)));
-  }
+  for (std::size_t h = 0; h < horizons.size(); ++h)
+    bank.running_noise.horizon_factor.emplace_back(horizons[h],
+                                                   std::exp2(0.25 * static_cast<double>(best_factor(noise, runs, h))));
 }
 
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,

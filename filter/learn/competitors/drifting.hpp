@@ -69,7 +69,7 @@ Bank learn_drifting(const Recording& recording, const GlobalModel& global, const
                     Wandering wandering = Wandering::all);
 
 /// Chooses the variance's factor of each horizon from 2 on, as learn_drifting.
-void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Eigen::Index>& horizons);
+void choose_horizon_factors(Bank& bank, const Recording& recording, std::vector<Eigen::Index> horizons);
 
 /// The model with noise levels: the variances of the modes of `one_motion`, which differ in noise alone, and their
 /// transition matrix. All other settings are chosen again: two climbs, setting by setting, to the best log score of the

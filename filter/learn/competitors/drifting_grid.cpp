@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/forecast.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/drifting_lanes.hpp"
 #include "ident/base/work_counter.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/forecast.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"

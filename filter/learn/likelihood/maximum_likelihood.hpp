@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <optional>
 
-#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/likelihood/coordinates.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"

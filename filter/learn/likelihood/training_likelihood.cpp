@@ -2,11 +2,55 @@
 
 #include <tbb/parallel_for.h>
 
+#include <cmath>
+#include <memory>
 #include <numeric>
+#include <stdexcept>
 #include <utility>
 #include <vector>
 
+#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/forecast.hpp"
+
 namespace modebank {
+
+using Eigen::Index;
+
+Eigen::VectorXd look_ahead_scores(const Bank& bank, const Trajectory& run, const FilterOptions& options,
+                                  const LookAhead& look) {
+  if (look.samples < 1) throw std::invalid_argument("look-ahead learning needs a horizon of at least one sample");
+  if (look.is_likelihood()) return log_densities(bank, run, options);
+  const std::unique_ptr<ForecastingFilter> filter = forecasting_filter(bank, run, options);
+  Eigen::VectorXd sums =
+      look.counts_errors() ? Eigen::VectorXd::Zero(run.samples()) : log_densities(bank, run, options);
+  Eigen::VectorXd error(run.state.rows());
+  const Index stride = (look.samples + 3) / 4;
+  Index first = 0;
+  for (Index t = 0; t < filter->moments().count(); ++t) {
+    filter->step_to(t);
+    const Instant& moment = filter->moments().instants[static_cast<std::size_t>(t)];
+    if (moment.starts) first = moment.sample;
+    if (moment.sample < 0 || (moment.sample - first) % stride != 0) continue;
+    filter->look_ahead(t, [&](Forecast& forecast, Index ahead, Index k) {
+      const auto y = run.state.col(k);
+      // One sample ahead, the filter itself has already computed the density of every sample.
+      if ((ahead > 1 || look.counts_errors()) && missing_entries(y) == 0) {
+        const double density = forecast.observe(y, error);
+        sums(k) += static_cast<double>(stride) *
+                   (look.counts_errors() ? -0.5 * error.cwiseQuotient(look.error_unit).squaredNorm() : density);
+      }
+      return ahead < look.samples;
+    });
+  }
+  return sums / static_cast<double>(look.samples);
+}
+
+double look_ahead_score(const Bank& bank, const Trajectory& run, const FilterOptions& options, const LookAhead& look) {
+  if (look.is_likelihood()) return log_likelihood(bank, run, options);
+  double total = 0.0;
+  for (const double value : look_ahead_scores(bank, run, options, look)) total += std::isnan(value) ? 0.0 : value;
+  return total;
+}
 
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options,
                                const LookAhead& look) {

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "filter/judge/run/look_ahead.hpp"
 #include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/left_out/rule.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/fit.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/refine/split_fits.hpp"

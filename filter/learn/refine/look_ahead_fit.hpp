@@ -9,7 +9,7 @@
 namespace modebank {
 
 /// Continues the fit from one-step likelihood to the maximum of the look-ahead score and the prior (options.look_ahead,
-/// look_ahead_score; judge/look_ahead.hpp).
+/// look_ahead_score; look_ahead_scores).
 /// - Densities: the search is over theta, Q, T and, with `R_estimated`, R.
 /// - Errors: the search is over theta; then the likelihood is maximised over the other parameters with that theta.
 /// The result is kept if left-out runs, each scored by a fit without that run, gain more than least_gain. With

@@ -90,7 +90,6 @@ class StageKey : public ::testing::Test {
     ChainOptions options = chain_options(config);
     options.bank.em.folds = 2;
     options.bank.em.max_iterations = most_components(base.mixture.selection) == 2 ? 6 : 2;
-    options.scoring.free_run.paths = 10;
     return options;
   }
   Recorder recorded(const Config& config, const Config& base) const {
@@ -105,10 +104,7 @@ class StageKey : public ::testing::Test {
 };
 
 const std::vector<KeyValues> bases{
-    {{"mixture.components", "2"},
-     {"bank.refine", "none"},
-     {"filter.simulate", "5"},
-     {"filter.simulate_method", "paths"}},
+    {{"mixture.components", "2"}, {"bank.refine", "none"}, {"filter.simulate", "5"}},
     {{"mixture.components", "2"}, {"bank.refine", "em"}},
     {{"window.model", "varx"}, {"mixture.components", "2"}},
     {{"bank.noise", "fixed"}, {"bank.transition", "stay"}},

@@ -101,7 +101,7 @@ TEST(FreeRun, SamplePathsAreDrawnFromAllSequencesOfModes) {
   const Bank bank = two_modes();
   const Trajectory run = simulate_bank(bank, 9, 3);
   constexpr Index paths = 20000;
-  const FreeRun found = free_run(bank, run, {}, after(1, FreeRunMethod::paths, paths));
+  const FreeRun found = free_run(bank, run, {}, after(1, paths));
   const double R = bank.R(0, 0), of_band = 5.0 * std::sqrt(0.025 / static_cast<double>(paths));
   for (Index k = 1; k < run.samples(); ++k) {
     const Sequences exact(bank, run, k);
@@ -125,8 +125,7 @@ TEST(FreeRun, MomentsAndPathsAgreeWithLagsAndSeveralStates) {
   bank.transition = TransitionMatrix::sticky(2, 0.8);
   bank.initial_probability = Eigen::Vector2d::Constant(0.5);
   const Trajectory run = any_run(s, 60);
-  const FreeRun exact = free_run(bank, run, {}, after(20)),
-                drawn = free_run(bank, run, {}, after(20, FreeRunMethod::paths, 10000));
+  const FreeRun exact = free_run(bank, run, {}, after(20)), drawn = free_run(bank, run, {}, after(20, 10000));
   const Eigen::ArrayXXd sd = exact.deviation.rightCols(40);
   EXPECT_LT(((drawn.mean - exact.mean).rightCols(40).array() / sd).abs().maxCoeff(), 0.06);
   EXPECT_LT((drawn.deviation.rightCols(40).array() / sd - 1.0).abs().maxCoeff(), 0.05);
@@ -136,7 +135,7 @@ TEST(FreeRun, MomentsAndPathsAgreeWithLagsAndSeveralStates) {
 TEST(FreeRun, EqualSeedsAreEqualPaths) {
   const Bank bank = two_modes();
   const Trajectory run = simulate_bank(bank, 50, 5);
-  FreeRunOptions options = after(3, FreeRunMethod::paths, 30);
+  FreeRunOptions options = after(3, 30);
   const FreeRun one = free_run(bank, run, {}, options), same = free_run(bank, run, {}, options);
   EXPECT_TRUE(near(one.mean, same.mean, 0.0) && near(one.upper, same.upper, 0.0));
   options.seed = 2;
@@ -148,7 +147,7 @@ TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   bank.modes[1].model.A(0, 0) = 1e4;
   bank.transition = TransitionMatrix((Eigen::Matrix2d() << 0.9, 0.1, 0.01, 0.99).finished());
   const Trajectory run = simulate_bank(two_modes(), 200, 6);
-  const FreeRun found = free_run(bank, run, {}, after(1, FreeRunMethod::paths, 50));
+  const FreeRun found = free_run(bank, run, {}, after(1, 50));
   EXPECT_EQ(found.lost_paths, 50);
   ASSERT_EQ(found.notes.size(), 1u);
   EXPECT_THAT(found.notes[0], HasSubstr("later predictions are not finite"));
@@ -166,9 +165,9 @@ TEST(SamplePaths, ModesMayFollowStateAndInput) {
   bank.modes[0].model.c(0) = 0.1;
   const Trajectory run = simulate_bank(two_modes(), 40, 9);
   const auto ruling = [](double x, double u) { return x + u > 0.5 ? 1 : 0; };
-  SamplePaths paths(bank, 5, 1, [&](Index, const auto& x, const auto& u, Eigen::VectorXd& row) {
-    row.setZero()(ruling(x(0), u(0))) = 1.0;
-  });
+  constexpr double steep = 1e6;
+  bank.transition_logit = {steep * Eigen::Matrix2d{{0.0, 0.0}, {1.0, 1.0}}, Eigen::Vector2d(0.5, 0.0)};
+  SamplePaths paths(bank, 5, 1);
   FilterMemory origin{Eigen::MatrixXd::Constant(1, 2, 0.4), Eigen::MatrixXd::Zero(1, 2), bank.initial_probability};
   paths.start(origin);
   double x = 0.4;

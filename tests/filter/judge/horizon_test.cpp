@@ -8,7 +8,7 @@
 #include <random>
 #include <vector>
 
-#include "filter/judge/run/drifting.hpp"
+#include "filter/judge/run/forecast.hpp"
 #include "filter/step/drifting_forecast.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"
@@ -176,7 +176,8 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
   const Trajectory run = simulate_drifting(model, 60, 9);
   const double a1 = 1.0 + model.theta(0)(0), a2 = model.theta(0)(1);
   const std::vector<Index> horizons{1, 2, 3, 7, 20};
-  const DriftingForecasts forecasts = drifting_forecasts(model, run, horizons);
+  const std::vector<LevelErrors> errors = level_errors(model, run, horizons);
+  const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, horizons);
   for (std::size_t h = 0; h < horizons.size(); ++h) {
     double sum = 0.0, now = 1.0, before = 0.0;
     for (Index j = 0; j < horizons[h]; ++j) {
@@ -186,9 +187,8 @@ TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
       now = next;
     }
     for (Index k = 1 + horizons[h]; k < run.samples(); ++k)
-      EXPECT_NEAR(
-          std::pow(forecasts.predictions.error[h](0, k) / forecasts.whitened[h](0, k), 2) / model.noise_variance()(0),
-          sum, ahead_digits)
+      EXPECT_NEAR(std::pow(ahead.error[h](0, k) / errors[h].whitened(0, k), 2) / model.noise_variance()(0), sum,
+                  ahead_digits)
           << "horizon " << horizons[h];
   }
 }
@@ -219,9 +219,9 @@ TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Eigen::Vector2d squares = Eigen::Vector2d::Zero();
   Eigen::Vector2d count = Eigen::Vector2d::Zero();
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const DriftingForecasts f = drifting_forecasts(model, simulate_drifting(model, 2000, seed), horizons);
+    const std::vector<LevelErrors> errors = level_errors(model, simulate_drifting(model, 2000, seed), horizons);
     for (Index h = 0; h < 2; ++h)
-      for (const double u : f.whitened[static_cast<std::size_t>(h)].reshaped())
+      for (const double u : errors[static_cast<std::size_t>(h)].whitened.reshaped())
         if (!std::isnan(u)) {
           squares(h) += u * u;
           ++count(h);
@@ -238,14 +238,14 @@ TEST(DriftingHorizon, FactorWidensEveryVariance) {
   model.running_noise.nu = 0.0;
   const Trajectory run = simulate_drifting(model, 50, 5);
   const HorizonEvaluation plain = evaluate_horizons(model, run, {}, {1, 3, 5, 8});
-  const DriftingForecasts f = drifting_forecasts(model, run, {1, 3, 5, 8});
+  const std::vector<LevelErrors> errors = level_errors(model, run, {1, 3, 5, 8});
   model.running_noise.horizon_factor = {{3, 4.0}, {8, 0.5}};
   const HorizonEvaluation wide = evaluate_horizons(model, run, {}, {1, 3, 5, 8});
   const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // horizon 5 has the factor of horizon 3
   for (Index h = 0; h < 4; ++h)
     for (Index k = 10; k < run.samples(); ++k) {
       const double c = factors[static_cast<std::size_t>(h)];
-      const double square = f.whitened[static_cast<std::size_t>(h)].col(k).squaredNorm();
+      const double square = errors[static_cast<std::size_t>(h)].whitened.col(k).squaredNorm();
       EXPECT_NEAR(wide.log_density(h, k), plain.log_density(h, k) - std::log(c) - 0.5 * square * (1.0 / c - 1.0),
                   ahead_digits);
     }

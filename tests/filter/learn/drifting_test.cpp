@@ -1,5 +1,5 @@
 // How the settings of a drifting model are chosen.
-#include "filter/judge/run/drifting.hpp"
+#include "filter/learn/competitors/drifting.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/learn/competitors/drifting.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/step/student_noise.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/filter/drifting_test_support.hpp"

@@ -1,10 +1,9 @@
 // Look-ahead learning: its scores, and the prior towards one motion.
-#include "filter/judge/run/look_ahead.hpp"
-
 #include <cmath>
 
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/horizon.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -39,7 +38,7 @@ TEST(LookAhead, IsTheMeanOfTheHorizonsDensities) {
     std::vector<Index> horizons;
     for (Index j = 1; j <= h; ++j) horizons.push_back(j);
     const Eigen::MatrixXd density = evaluate_horizons(bank, run, {}, horizons).log_density;
-    const Index stride = look_ahead_stride(h);
+    const Index stride = (h + 3) / 4;
     Eigen::VectorXd expected = density.row(0);
     for (Index k = 1; k < run.samples(); ++k)
       for (Index j = 2; j <= std::min(h, k); ++j)
@@ -69,7 +68,7 @@ TEST(LookAhead, OfLaggedModelsIsThePlainRecursions) {
   const LinearStructure s{1, 1, true, 3, 2};
   const Eigen::VectorXd theta = test::stable_theta(s);
   const Trajectory run = test::any_run(s, 50);
-  const Index h = 9, stride = look_ahead_stride(h);
+  const Index h = 9, stride = (h + 3) / 4;
   Eigen::VectorXd expected = Eigen::VectorXd::Zero(50);
   for (Index origin = s.first_transition(); origin + 1 < 50; origin += stride) {
     Eigen::VectorXd y = run.state.row(0).transpose();

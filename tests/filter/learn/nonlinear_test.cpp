@@ -99,7 +99,6 @@ TEST(BankWithTerms, SamplePathsHaveTheMeanOfItsMoments) {
   options.samples = 5;
   options.horizon = 10;
   const FreeRun moments = free_run(bent.bank(), run, FilterOptions(), options);
-  options.method = FreeRunMethod::paths;
   options.paths = 4000;
   const FreeRun paths = free_run(bent.bank(), run, FilterOptions(), options);
   for (Index k = 5; k < 15; ++k)

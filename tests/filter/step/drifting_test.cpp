@@ -1,12 +1,11 @@
 // Steps of the drifting model: closed forms, missing samples, starts.
-#include "filter/judge/run/drifting.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <stdexcept>
 #include <vector>
 
+#include "filter/judge/run/horizon.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "filter/step/student_noise.hpp"

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "filter/judge/run/drifting.hpp"
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/horizon.hpp"
 #include "filter/judge/score/statistics.hpp"
