@@ -8,7 +8,6 @@
 #include "app/config/free_run_check.hpp"
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/mode_sequence.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/judge/score/scores.hpp"
 #include "filter/judge/score/statistics.hpp"

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <vector>
 
-#include "filter/judge/score/squared_distances.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "modebank/base/names.hpp"
 

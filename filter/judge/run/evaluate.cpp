@@ -8,6 +8,9 @@
 #include "filter/step/pit_draw.hpp"
 #include "filter/step/stepper.hpp"
 #include "ident/base/not_a_number.hpp"
+#include "ident/data/public_recording.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/judge/evaluate.hpp"
 
 namespace modebank {
 
@@ -94,3 +97,22 @@ Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const Fil
 }
 
 }  // namespace modebank
+
+// The public API of scoring: converts between plain vectors and Eigen.
+namespace modebank::judge {
+
+Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options,
+                        std::uint64_t seed) {
+  const Trajectory trajectory = to_trajectory(run, bank.measurements(), bank.inputs());
+  RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
+  draw_pit(trajectory, seed, e);
+  return {to_matrix(e.prediction), to_matrix(e.innovation),  to_matrix(e.innovation_covariance),
+          to_matrix(e.state),      to_matrix(e.covariance),  to_vector(e.nis),
+          to_matrix(e.pit),        to_vector(e.log_density), to_matrix(e.mode_probability)};
+}
+
+double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
+  return modebank::log_likelihood(bank.internal(), to_trajectory(run, bank.measurements(), bank.inputs()), options);
+}
+
+}  // namespace modebank::judge

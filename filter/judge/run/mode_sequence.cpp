@@ -1,5 +1,4 @@
-#include "filter/judge/run/mode_sequence.hpp"
-
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
 

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/score/scoring_options.hpp"
+#include "filter/judge/run/free_run.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/armax.hpp"
@@ -14,6 +14,14 @@
 #include "modebank/mixture/options.hpp"
 
 namespace modebank {
+
+/// Options for evaluating a filter. Options of the filter's steps are in FilterOptions.
+struct ScoringOptions {
+  static inline const std::vector<Eigen::Index> default_horizon{1, 10};
+  std::vector<Eigen::Index> horizon = default_horizon;  ///< horizons in samples; the summary already has horizon 1
+  FreeRunOptions free_run = {};                         ///< options of free runs, with the seed of the whole chain
+  std::uint64_t seed = 1;  ///< seed for the transforms of quantised measurements; the seed of the whole chain
+};
 
 /// Which options of windows are derived from the data (ident/fit/window_length.hpp).
 struct AutomaticWindows {

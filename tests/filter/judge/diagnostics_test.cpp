@@ -6,7 +6,7 @@
 
 #include <cmath>
 
-#include "filter/judge/run/mode_sequence.hpp"
+#include "filter/judge/run/evaluate.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

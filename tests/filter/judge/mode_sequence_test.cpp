@@ -1,10 +1,9 @@
 // The most probable sequence of modes.
-#include "filter/judge/run/mode_sequence.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 
+#include "filter/judge/run/evaluate.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

@@ -1,6 +1,4 @@
 // Mean NIS, and the interval of the verdict, with and without missing signals: closed forms and simulation.
-#include "filter/judge/score/squared_distances.hpp"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/normal_distribution.hpp>
@@ -10,6 +8,7 @@
 
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/score/scores.hpp"
+#include "filter/judge/score/statistics.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

@@ -11,7 +11,6 @@
 
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/free_run.hpp"
-#include "filter/judge/run/mode_sequence.hpp"
 #include "filter/judge/run/sample_paths.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
