@@ -8,8 +8,8 @@
 
 #include "app/chain/stages.hpp"
 #include "app/text/judged_runs.hpp"
+#include "filter/judge/run/horizon.hpp"
 #include "filter/judge/score/combination.hpp"
-#include "filter/learn/chain/forecasters.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
@@ -37,9 +37,9 @@ void keep_reached_horizons(Archive& archive, bool stated) {
 
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive) {
   const std::vector<Trajectory>& runs = archive.recording->runs;
-  const std::vector<Forecaster> all = forecasters_of(archive, filter);
+  const std::vector<LearnedFilter> all = learned_filters(archive, filter);
   std::vector<std::string> names;
-  for (const Forecaster& one : all) names.push_back(one.name);
+  for (const LearnedFilter& one : all) names.push_back(one.name);
   std::vector<Index> horizons = scoring.horizon;
   horizons.push_back(1);  // the live filters need the weights for one step ahead
   std::sort(horizons.begin(), horizons.end());
@@ -50,7 +50,7 @@ void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Arc
     tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
       if (runs[i].role != role) return;
       std::vector<HorizonEvaluation> said;
-      for (const Forecaster& one : all) said.push_back(one.ahead(runs[i], horizons));
+      for (const LearnedFilter& one : all) said.push_back(evaluate_horizons(one.bank, runs[i], one.options, horizons));
       tables.add(i, said);
       counter.add();
     });

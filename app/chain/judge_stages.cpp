@@ -11,8 +11,6 @@
 #include "filter/judge/score/combination.hpp"
 #include "filter/judge/score/scores.hpp"
 #include "filter/judge/score/statistics.hpp"
-#include "filter/learn/chain/forecasters.hpp"
-#include "filter/learn/chain/free_runs.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 
@@ -144,55 +142,24 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                     });
 }
 
-namespace {
-
-/// Free runs of all filters combined. The weights maximise the likelihood of the training runs. Adds rows that contain
-/// the weights.
-std::vector<FreeRun> combined_free_runs(const std::vector<Forecaster>& all, const std::vector<Trajectory>& runs,
-                                        const FreeRunOptions& options, std::vector<CombinationRow>& rows) {
-  if (options.samples == 0) return {};
-  std::vector<std::vector<FreeRun>> members;
-  for (const Forecaster& one : all) members.push_back(one.free(runs, options));
-  std::vector<Eigen::MatrixXd> densities;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].role != Role::train) continue;
-    densities.emplace_back(std::ssize(all), runs[i].samples());
-    for (std::size_t f = 0; f < all.size(); ++f)
-      densities.back().row(static_cast<Index>(f)) = members[f][i].log_density.transpose();
-  }
-  const std::vector<double> weights = stacked_weights(densities);
-  for (const Role role : {Role::train, Role::test})
-    for (std::size_t f = 0; f < all.size(); ++f) rows.push_back({role, 0, all[f].name, weights[f], weights[f]});
-  std::vector<FreeRun> mixed;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    std::vector<const FreeRun*> of_run;
-    for (const std::vector<FreeRun>& one : members) of_run.push_back(&one[i]);
-    mixed.push_back(combine_free_runs(of_run, weights));
-  }
-  return mixed;
-}
-
-}  // namespace
-
 std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
                                            const EvaluationStream* stream) {
-  const std::vector<Forecaster> all = forecasters_of(archive, filter);
+  const std::vector<LearnedFilter> all = learned_filters(archive, filter);
   if (all.size() < 2) return std::nullopt;
   std::vector<std::string> names;
-  for (const Forecaster& one : all) names.push_back(one.name);
+  for (const LearnedFilter& one : all) names.push_back(one.name);
   const std::vector<double> start = start_weights(archive.combination, 1, names);
   const std::vector<Trajectory>& runs = archive.recording->runs;
   const std::string name = combined_name;
   const Bank frame = combined_frame(all.front().bank);
-  return score_runs({name, frame, false, runs, scoring, stream},
-                    combined_free_runs(all, runs, scoring.free_run, archive.combination), [&](std::size_t i) {
-                      std::vector<std::unique_ptr<AnyFilter>> filters;
-                      for (const Forecaster& one : all) filters.push_back(one.start());
-                      CombinedFilter together(std::move(filters), start);
-                      RunEvaluation said = evaluate_run(frame, runs[i], together);
-                      draw_pit(runs[i], scoring.seed, said);
-                      return said;
-                    });
+  return score_runs({name, frame, false, runs, scoring, stream}, {}, [&](std::size_t i) {
+    std::vector<std::unique_ptr<AnyFilter>> filters;
+    for (const LearnedFilter& one : all) filters.push_back(any_filter(one.bank, one.options));
+    CombinedFilter together(std::move(filters), start);
+    RunEvaluation said = evaluate_run(frame, runs[i], together);
+    draw_pit(runs[i], scoring.seed, said);
+    return said;
+  });
 }
 
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {

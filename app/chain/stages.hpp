@@ -46,6 +46,10 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
 /// Adds the predictions of each filter and of the combination, for all configured horizons.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);
 
+/// Free runs of all runs, in parallel; empty if free runs are off (options.samples = 0).
+std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
+                               const FreeRunOptions& options);
+
 /// Remarks on free runs, one line each. A remark names runs for which the bank makes no prediction, or sample paths
 /// that left the finite range.
 std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,

@@ -60,36 +60,27 @@ OpenedFilter open_one(const OpenArchive& archive, const std::string& which, cons
 
 /// The filters that the archive combines one sample ahead, with their weights after training. The bank is the first.
 OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
-  const CombinedMembers members = combined_members(archive, 1);
+  const std::vector<CombinationRow> rows = load_combination(archive);
+  std::vector<std::string> names;
+  for (const CombinationRow& row : rows)
+    if (row.role == Role::train && row.horizon == 1) names.push_back(row.filter);
+  if (names.empty())
+    throw DataError(archive.path().string() +
+                    ": the archive has no combined forecasts; make it again with modebank run");
   std::vector<std::unique_ptr<AnyFilter>> filters;
   std::optional<OpenedFilter> bank;
   Eigen::Index lags = 0;
-  for (const std::string& name : members.names) {
+  for (const std::string& name : names) {
     OpenedFilter opened = open_one(archive, name, config);
     filters.push_back(std::move(opened.filter));
     lags = std::max(lags, opened.lags);
     if (!bank) bank = std::move(opened);
   }
   return {combined_frame(bank->bank), bank->options, lags,
-          std::make_unique<CombinedFilter>(std::move(filters), members.weights)};
+          std::make_unique<CombinedFilter>(std::move(filters), start_weights(rows, 1, names))};
 }
 
 }  // namespace
-
-CombinedMembers combined_members(const OpenArchive& archive, Index horizon) {
-  const std::vector<CombinationRow> rows = load_combination(archive);
-  Index at = -1;
-  for (const CombinationRow& row : rows)
-    if (at != horizon) at = row.horizon == horizon ? horizon : std::max(at, row.horizon);
-  CombinedMembers members;
-  for (const CombinationRow& row : rows)
-    if (row.role == Role::train && row.horizon == at) members.names.push_back(row.filter);
-  if (members.names.empty())
-    throw DataError(archive.path().string() +
-                    ": the archive has no combined forecasts; make it again with modebank run");
-  members.weights = start_weights(rows, at, members.names);
-  return members;
-}
 
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config) {
   if (config.track.filter == TrackedFilter::combined) return open_combined(archive, config);

@@ -26,13 +26,6 @@ std::string tracked_bank(const Config& config);
 FilterOptions tracked_options(const Config& config);
 /// Throws ConfigurationError unless the configured columns are as many as the bank's channels.
 void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive);
-/// The filters that an archive combines at a horizon (0: free run), with their start weights. The bank is the first. If
-/// the archive lacks this horizon, the longest horizon is used. Throws DataError for an archive without combinations.
-struct CombinedMembers {
-  std::vector<std::string> names;
-  std::vector<double> weights;
-};
-CombinedMembers combined_members(const OpenArchive& archive, Eigen::Index horizon);
 /// Throws the exceptions of load_bank, and ConfigurationError for options that the filter does not have.
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config);
 

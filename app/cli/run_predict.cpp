@@ -12,8 +12,7 @@
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/free_run_check.hpp"
-#include "filter/judge/score/combination.hpp"
-#include "filter/learn/chain/free_runs.hpp"
+#include "filter/judge/run/free_run.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"
@@ -30,41 +29,16 @@ double period_of(const OpenArchive& archive, const Config& config) {
   return load_bank(archive, tracked_bank(config)).dt_s;
 }
 
-/// Free runs of one filter of the archive.
-std::vector<FreeRun> predict_alone(const OpenArchive& archive, const Config& config, const Recording& recording) {
-  const FilterOptions options = tracked_options(config);
-  const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
-  const Bank bank = load_bank(archive, tracked_bank(config));
-  check_free_run(bank.structure, how);
-  return free_runs(bank, recording.runs, options, how);
-}
-
-/// Free runs of all filters combined. The weights maximise the likelihood of free runs on the training runs. They stay
-/// constant, because a free run has no measurements that could adapt them.
-std::vector<FreeRun> predict_together(const OpenArchive& archive, const Config& config, const Recording& recording) {
-  const CombinedMembers members = combined_members(archive, 0);
-  std::vector<std::vector<FreeRun>> of_filters;
-  for (const std::string& name : members.names) {
-    Config one = config;
-    one.track.filter = parse_name<TrackedFilter>(name).value();
-    of_filters.push_back(predict_alone(archive, one, recording));
-  }
-  std::vector<FreeRun> mixed;
-  for (std::size_t i = 0; i < recording.runs.size(); ++i) {
-    std::vector<const FreeRun*> of_run;
-    for (const std::vector<FreeRun>& runs : of_filters) of_run.push_back(&runs[i]);
-    mixed.push_back(combine_free_runs(of_run, members.weights));
-  }
-  return mixed;
-}
-
 std::vector<FreeRun> predict_all(const OpenArchive& archive, const Config& config, const Recording& recording) {
+  if (config.track.filter == TrackedFilter::combined)
+    throw ConfigurationError("predict: combined filters need measurements; choose one of them (--filter)");
+  const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
   const Bank bank = load_bank(archive, tracked_bank(config));
   check_columns(config, bank, archive);
   if (const std::string remark = period_remark(archive.path().string(), bank, recording); !remark.empty())
     spdlog::warn("{}", remark);
-  return config.track.filter == TrackedFilter::combined ? predict_together(archive, config, recording)
-                                                        : predict_alone(archive, config, recording);
+  check_free_run(bank.structure, how);
+  return free_runs(bank, recording.runs, tracked_options(config), how);
 }
 
 FileForm predictions_form() {

@@ -14,6 +14,7 @@
 #include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/warnings.hpp"
+#include "filter/step/combined_filter.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank::app {
@@ -77,6 +78,15 @@ const FreeRunRow* free_run_of(const Archive& archive, const std::string& filter,
   return found == archive.free_runs.end() ? nullptr : &*found;
 }
 
+/// The filter whose free run stands for `filter`. The combination needs measurements, so that of the single filter with
+/// the highest score in free runs of the training runs.
+std::string simulating_filter(const Archive& archive, const std::string& filter) {
+  const FreeRunRow* best = nullptr;
+  for (const FreeRunRow& row : archive.free_runs)
+    if (row.role == Role::train && row.run == "*" && (!best || row.log_score > best->log_score)) best = &row;
+  return filter == combined_name && best ? best->filter : filter;
+}
+
 /// Text such as "RMSE one step ahead 0.03 rad/s (1.72 deg/s), FIT 92.3 % (drifting 0.04); 10 steps ahead ...; in free
 /// run from 3 samples FIT 71.2 % (...)".
 std::string mean_words(const FirstScreen& screen) {
@@ -104,10 +114,10 @@ std::string warning_words(const Archive& archive) {
 void add_scores(FirstScreen& screen, const Archive& archive) {
   const std::string other = screen.filter == "bank" ? screen.competitor : "bank";
   screen.errors = errors_ahead(archive, screen.role, screen.filter, other);
-  if (const FreeRunRow* own = free_run_of(archive, screen.filter, screen.role)) {
+  if (const FreeRunRow* own = free_run_of(archive, simulating_filter(archive, screen.filter), screen.role)) {
     screen.free_run_start = own->start;
     screen.fit = own->fit;
-    if (const FreeRunRow* beside = free_run_of(archive, other, screen.role))
+    if (const FreeRunRow* beside = free_run_of(archive, other, screen.role); beside && beside != own)
       screen.other_fit_words = fmt::format("{} {}", other, fit_words(beside->fit));
   }
   screen.mean = mean_words(screen);

@@ -1,8 +1,8 @@
 #include <memory>
 
+#include "app/chain/stages.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/free_run_check.hpp"
-#include "filter/learn/chain/free_runs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/filter/bank.hpp"
 #include "python/bindings/arrays.hpp"

@@ -5,8 +5,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/step/equations/predicted_mixture.hpp"
-#include "ident/base/distributions.hpp"
 #include "modebank/filter/forecast_weights.hpp"
 
 namespace modebank {
@@ -85,62 +83,6 @@ CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>&
   out.weight.assign(first.horizons.size(), Eigen::MatrixXd::Constant(std::ssize(members), N, not_a_number));
   for (std::size_t h = 0; h < first.horizons.size(); ++h)
     CombinedHorizon(members, h, start.empty() ? std::vector<double>(members.size(), 1.0) : start.at(h)).fill(out);
-  return out;
-}
-
-namespace {
-
-/// The edge of the combined band at this quantile.
-double mixed_edge(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, bool upper, Index i,
-                  Index k) {
-  const double probability = upper ? 0.975 : 0.025, score = normal_quantile(probability);
-  NormalMixture mixture;
-  mixture.weight = Eigen::VectorXd::Map(weights.data(), std::ssize(weights));
-  mixture.mean = Eigen::VectorXd::Zero(mixture.weight.size());
-  mixture.deviation = Eigen::VectorXd::Ones(mixture.weight.size());
-  for (std::size_t f = 0; f < members.size(); ++f) {
-    const FreeRun& one = *members[f];
-    const auto at = static_cast<Index>(f);
-    if (weights[f] == 0.0) continue;
-    mixture.mean(at) = one.mean(i, k);
-    mixture.deviation(at) =
-        std::max(((upper ? one.upper : one.lower)(i, k) - one.mean(i, k)) / score, std::sqrt(least_variance));
-  }
-  return mixture.quantile(probability, score);
-}
-
-void mix_sample(const std::vector<const FreeRun*>& members, const std::vector<double>& weights, Index k, FreeRun& out) {
-  std::vector<double> known, densities;
-  for (const FreeRun* one : members) {
-    known.push_back(one->mean.col(k).allFinite() ? 0.0 : not_a_number);
-    densities.push_back(one->log_density(k));
-  }
-  const std::vector<double> share = ForecastWeights::spoken_weights(weights, known);
-  const auto mix = [&](auto value) {
-    double sum = 0.0;
-    for (std::size_t f = 0; f < members.size(); ++f)
-      if (share[f] > 0.0) sum += share[f] * value(*members[f]);
-    return sum;
-  };
-  for (Index i = 0; i < out.mean.rows(); ++i) {
-    const double mean = out.mean(i, k) = mix([&](const FreeRun& one) { return one.mean(i, k); });
-    out.deviation(i, k) = std::sqrt(mix([&](const FreeRun& one) {
-      return one.deviation(i, k) * one.deviation(i, k) + (one.mean(i, k) - mean) * (one.mean(i, k) - mean);
-    }));
-    out.pit(i, k) = mix([&](const FreeRun& one) { return one.pit(i, k); });
-    out.lower(i, k) = mixed_edge(members, share, false, i, k);
-    out.upper(i, k) = mixed_edge(members, share, true, i, k);
-  }
-  out.log_density(k) = ForecastWeights::mixed_log_density(share, densities);
-}
-
-}  // namespace
-
-FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights) {
-  if (members.empty()) throw std::invalid_argument("no free runs to combine");
-  FreeRun out = *members.front();  // takes the samples and modes of the first member
-  for (Index k = 0; k < out.mode.size(); ++k)
-    if (out.mode(k) >= 0) mix_sample(members, weights, k, out);
   return out;
 }
 

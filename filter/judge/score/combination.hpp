@@ -4,7 +4,6 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/run/free_run.hpp"
 #include "filter/judge/run/horizon.hpp"
 #include "filter/step/combined_filter.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -26,15 +25,10 @@ struct CombinedForecasts {
 CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
                                     const std::vector<std::vector<double>>& start = {});
 
-/// Combines free runs of one run with constant weights. The combined band comes from a mixture of distributions, one
-/// per member. Each is normal about the member's mean; on either side it is as wide as the member's band. A single
-/// member therefore keeps its band.
-FreeRun combine_free_runs(const std::vector<const FreeRun*>& members, const std::vector<double>& weights);
-
 /// Mean weight of a filter; one row of /evaluation/combination.
 struct CombinationRow {
   Role role = Role::train;
-  Eigen::Index horizon = 1;  ///< samples ahead; 0 for a free run
+  Eigen::Index horizon = 1;  ///< samples ahead
   std::string filter;
   double weight = 0.0;          ///< mean over the scored samples of all runs of the role
   double start = not_a_number;  ///< weight at the start of a held-out or later run

@@ -4,7 +4,9 @@
 
 #include <memory>
 
+#include "filter/judge/decide/finding.hpp"
 #include "filter/learn/chain/training_check.hpp"
+#include "filter/learn/from_mixture/cluster_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/window_length.hpp"
 #include "modebank/base/eigen.hpp"
@@ -43,8 +45,16 @@ class Run {
   }
 
   void cluster(const LearningInputs& inputs) {
-    provide(Stage::mixture, inputs,
-            [&] { learned_.mixture = modebank::cluster(recording_, *learned_.windows, inputs.mixture, progress_); });
+    provide(Stage::mixture, inputs, [&] {
+      const MixtureInputs& of = inputs.mixture;
+      const Stopwatch watch;
+      learned_.mixture = cluster_windows(recording_, *learned_.windows, of.window, of.mixture, of.seed);
+      const MixtureResult& found = *learned_.mixture;
+      const std::string part =
+          found.compared > 0 ? ", candidates compared on " + of_all(found.compared, found.clustered) + "," : "";
+      progress_.progress(fmt::format("mixture: {} components from {} windows{} in {:.2f} s", found.mixture.components(),
+                                     found.clustered, part, watch.seconds()));
+    });
   }
 
   void learn_competitors(const LearningInputs& inputs) {
@@ -173,6 +183,25 @@ void learn_all(const Recording& recording, const LearningOptions& asked, Stage l
   if (last < Stage::bank) return;
   run.learn_competitors(inputs);
   run.learn_bank(inputs, one_model);
+}
+
+std::optional<Bank> Learning::bank_of(const std::string& filter) const {
+  if (filter == "bank") return bank;
+  if (filter == "baseline") return baseline;
+  if (filter == "noise_only") return noise_only;
+  if (filter == "one_motion") return one_motion;
+  if (filter == "nonlinear") return nonlinear;
+  if (filter == "drifting") return drifting;
+  if (filter == combined_name && bank) return combined_frame(*bank);
+  return {};
+}
+
+std::vector<LearnedFilter> learned_filters(const Learning& learned, const FilterOptions& options) {
+  std::vector<LearnedFilter> all;
+  if (learned.bank) all.push_back({"bank", *learned.bank, options});
+  for (const char* name : competitor_names)
+    if (const std::optional<Bank> bank = learned.bank_of(name)) all.push_back({name, *bank, competitor_filter(name)});
+  return all;
 }
 
 }  // namespace modebank

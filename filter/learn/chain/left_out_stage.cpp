@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "filter/judge/run/horizon.hpp"
 #include "filter/judge/score/combination.hpp"
-#include "filter/learn/chain/forecasters.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"
@@ -78,19 +78,21 @@ std::vector<LeftOutRow> score_left_out(const Recording& recording, const Learnin
   horizons.push_back(1);
   std::vector<std::string> names;
   std::vector<std::vector<HorizonEvaluation>> forecasts;
-  std::vector<std::vector<Forecaster>> filters(splits.size());
+  std::vector<std::vector<LearnedFilter>> filters(splits.size());
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
-    filters[s] = forecasters_of(learned_on(learned, splits[s].training, inputs, of_splits, s), *inputs.filter);
+    filters[s] = learned_filters(learned_on(learned, splits[s].training, inputs, of_splits, s), *inputs.filter);
   });
-  for (const Forecaster& one : filters.front()) names.push_back(one.name);
+  for (const LearnedFilter& one : filters.front()) names.push_back(one.name);
   forecasts.resize(names.size());
   for (std::size_t s = 0; s < splits.size(); ++s)
     for (std::size_t f = 0; f < names.size(); ++f) {
       const std::vector<Trajectory>& runs = splits[s].left_out.runs;
       const std::size_t first = forecasts[f].size();
       forecasts[f].resize(first + runs.size());
-      tbb::parallel_for(std::size_t{0}, runs.size(),
-                        [&](std::size_t r) { forecasts[f][first + r] = filters[s][f].ahead(runs[r], horizons); });
+      tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
+        const LearnedFilter& one = filters[s][f];
+        forecasts[f][first + r] = evaluate_horizons(one.bank, runs[r], one.options, horizons);
+      });
     }
   progress.progress(
       fmt::format("left out: scored {} filters on training runs, each learned without the scored run, in {:.2f} s",

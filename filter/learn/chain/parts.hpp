@@ -52,4 +52,14 @@ struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, Bank
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 
+/// A learned filter with the options to run it.
+struct LearnedFilter {
+  std::string name;
+  Bank bank;
+  FilterOptions options;
+};
+
+/// The bank and those competitors that exist. `options`: of the bank's filter.
+std::vector<LearnedFilter> learned_filters(const Learning& learned, const FilterOptions& options);
+
 }  // namespace modebank

@@ -22,9 +22,6 @@ FoundStructure search_structure(const Recording& recording, const StructureInput
 /// The options with the found structure, marked as the result of a search.
 LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found, Index inputs);
 
-MixtureResult cluster(const Recording& recording, const WindowFits& windows, const MixtureInputs& inputs,
-                      const Progress& progress);
-
 /// The global model of the windows in linear form, for linear and motion models.
 GlobalModel linear_global(const Recording& recording, const WindowFits& windows, const FitOptions& window);
 

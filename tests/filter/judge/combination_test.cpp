@@ -153,38 +153,6 @@ TEST(Combination, LeftOutRowsChooseWeightsAndScoreAllTogether) {
   EXPECT_TRUE(start_weights(rows, {1}, {"bank", "nonlinear"}).empty());
 }
 
-/// Two normal distributions: moments in closed form. At each edge of the band, 2.5 % of the mixture lie outside.
-TEST(Combination, FreeRunsAreMixed) {
-  FreeRun a, b;
-  for (FreeRun* one : {&a, &b}) {
-    for (Eigen::MatrixXd* values : {&one->mean, &one->deviation, &one->lower, &one->upper, &one->pit})
-      values->setConstant(1, 2, not_a_number);
-    one->log_density.setConstant(2, not_a_number);
-    one->mode.setConstant(2, -1);
-    const double mean = one == &a ? 0.0 : 2.0, sd = one == &a ? 1.0 : 0.5, edge = 1.959963984540054;
-    one->mean(0, 1) = mean;
-    one->deviation(0, 1) = sd;
-    one->lower(0, 1) = mean - edge * sd;
-    one->upper(0, 1) = mean + edge * sd;
-    one->pit(0, 1) = one == &a ? 0.75 : 0.25;
-    one->log_density(1) = one == &a ? -1.0 : -2.0;
-    one->mode(1) = 0;
-  }
-  const FreeRun mixed = combine_free_runs({&a, &b}, {0.25, 0.75});
-  EXPECT_TRUE(std::isnan(mixed.mean(0, 0)));
-  EXPECT_NEAR(mixed.mean(0, 1), 1.5, combined_digits);
-  EXPECT_NEAR(mixed.deviation(0, 1), std::sqrt(0.25 * (1.0 + 2.25) + 0.75 * (0.25 + 0.25)), combined_digits);
-  EXPECT_NEAR(mixed.pit(0, 1), 0.375, combined_digits);
-  EXPECT_NEAR(mixed.log_density(1), std::log(0.25 * std::exp(-1.0) + 0.75 * std::exp(-2.0)), combined_digits);
-  const auto below = [](double y) {
-    return 0.25 * 0.5 * std::erfc(-y / std::sqrt(2.0)) + 0.75 * 0.5 * std::erfc(-(y - 2.0) / 0.5 / std::sqrt(2.0));
-  };
-  EXPECT_NEAR(below(mixed.lower(0, 1)), 0.025, 1e-9);
-  EXPECT_NEAR(below(mixed.upper(0, 1)), 0.975, 1e-9);
-  const FreeRun alone = combine_free_runs({&a, &b}, {1.0, 0.0});
-  EXPECT_NEAR(alone.lower(0, 1), a.lower(0, 1), 1e-9);
-}
-
 TEST(Combination, WhatDoesNotFitIsRefused) {
   const HorizonEvaluation a = forecasts(30, {1}, 1, 1.0), b = forecasts(31, {1}, 1, 1.0),
                           c = forecasts(30, {2}, 1, 1.0);
