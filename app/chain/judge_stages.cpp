@@ -153,8 +153,8 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
   const std::string name = combined_name;
   const Bank frame = combined_frame(all.front().bank);
   return score_runs({name, frame, false, runs, scoring, stream}, {}, [&](std::size_t i) {
-    std::vector<std::unique_ptr<AnyFilter>> filters;
-    for (const LearnedFilter& one : all) filters.push_back(any_filter(one.bank, one.options));
+    std::vector<BankFilter> filters;
+    for (const LearnedFilter& one : all) filters.emplace_back(one.bank, one.options);
     CombinedFilter together(std::move(filters), start);
     RunEvaluation said = evaluate_run(frame, runs[i], together);
     draw_pit(runs[i], scoring.seed, said);

@@ -9,7 +9,6 @@
 
 #include "app/chain/stage_inputs.hpp"
 #include "filter/judge/score/combination.hpp"
-#include "filter/step/combined_filter.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_combination.hpp"
 #include "modebank/base/error.hpp"
@@ -48,7 +47,7 @@ namespace {
 
 OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {
   Bank bank = load_bank(archive, which);
-  auto filter = any_filter(bank, options);
+  CombinedFilter filter(BankFilter(bank, options));
   const Eigen::Index lags = std::max(bank.structure.state_lags, bank.structure.first_transition() + 1);
   return {std::move(bank), options, lags, std::move(filter)};
 }
@@ -67,17 +66,17 @@ OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
   if (names.empty())
     throw DataError(archive.path().string() +
                     ": the archive has no combined forecasts; make it again with modebank run");
-  std::vector<std::unique_ptr<AnyFilter>> filters;
+  std::vector<BankFilter> filters;
   std::optional<OpenedFilter> bank;
   Eigen::Index lags = 0;
   for (const std::string& name : names) {
     OpenedFilter opened = open_one(archive, name, config);
-    filters.push_back(std::move(opened.filter));
+    filters.emplace_back(opened.bank, opened.options);
     lags = std::max(lags, opened.lags);
     if (!bank) bank = std::move(opened);
   }
   return {combined_frame(bank->bank), bank->options, lags,
-          std::make_unique<CombinedFilter>(std::move(filters), start_weights(rows, 1, names))};
+          CombinedFilter(std::move(filters), start_weights(rows, 1, names))};
 }
 
 }  // namespace

@@ -1,11 +1,10 @@
 #pragma once
 
-#include <memory>
 #include <string>
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "filter/step/any_filter.hpp"
+#include "filter/step/combined_filter.hpp"
 #include "io/archive/bank/open_archive.hpp"
 
 namespace modebank::app {
@@ -16,7 +15,7 @@ struct OpenedFilter {
   Bank bank;
   FilterOptions options;
   Eigen::Index lags;
-  std::unique_ptr<AnyFilter> filter;
+  CombinedFilter filter;
 };
 /// Throws ConfigurationError for filters that are not banks. `what`: the action, for the error message.
 void require_bank(const Config& config, const std::string& what);

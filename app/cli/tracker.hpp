@@ -41,12 +41,13 @@ class Tracker {
     double time_s;
     AlignedSamples samples;
     ValidityJudge validity;
+    CombinedFilter::Snapshot filter;
   };
 
   const Config& config_;
   OpenedFilter opened_;
   const Bank& bank_ = opened_.bank;
-  AnyFilter& filter_ = *opened_.filter;
+  CombinedFilter& filter_ = opened_.filter;
   LiveJudge judge_;
   ValidityJudge validity_;
   SampleReader reader_;

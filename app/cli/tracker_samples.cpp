@@ -8,8 +8,7 @@ void Tracker::take_sample(const TimedSample& sample) {
   if (!comes_in_time(sample.time_s)) return;
   before_leap_.reset();
   if (last_s_ && filter_.started() && is_gap(*last_s_, sample.time_s)) {
-    before_leap_ = BeforeLeap{*last_s_, samples_, validity_};
-    filter_.remember();
+    before_leap_ = BeforeLeap{*last_s_, samples_, validity_, filter_.snapshot()};
     samples_.restart();
   }
   if (++came_ == 1) {
@@ -59,7 +58,7 @@ bool Tracker::comes_in_time(double time_s) {
     messages_.say_once(
         place_, fmt::format("time goes back from {} s to {} s, which follows {} s: the filter goes on from there",
                             *last_s_, time_s, before_leap_->time_s));
-    filter_.go_back();
+    filter_.restore(before_leap_->filter);
     samples_ = before_leap_->samples;
     validity_ = before_leap_->validity;
     return true;

@@ -1,13 +1,10 @@
 // The public API of this library: converts between plain vectors and Eigen.
-#include <optional>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/forecast.hpp"
 #include "filter/step/pit_draw.hpp"
-#include "filter/step/snapshot_numbers.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 
@@ -158,21 +155,14 @@ BankDescription Bank::description() const {
 }
 
 struct BankFilter::Internal {
-  Bank bank;
-  FilterOptions options;
   modebank::BankFilter filter;
   Index inputs, measurements;
-  std::optional<Forecaster> forecaster = {};  ///< created at the first request
   Estimate estimate = {};
   std::uint64_t seed = pit_seed(1, "");
   Index samples = 0;  ///< number of samples processed so far
 
-  Internal(const Bank& stepped, const FilterOptions& how)
-      : bank(stepped),
-        options(how),
-        filter(bank.internal(), options),
-        inputs(bank.inputs()),
-        measurements(bank.measurements()) {
+  Internal(const Bank& bank, const FilterOptions& options)
+      : filter(bank.internal(), options), inputs(bank.inputs()), measurements(bank.measurements()) {
     assign(filter.estimate(), estimate);
   }
 };
@@ -205,15 +195,14 @@ const Estimate& BankFilter::step(double time_s, const double* input, const doubl
 const Estimate& BankFilter::estimate() const { return internal_->estimate; }
 
 std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t steps) const {
-  if (!internal_->forecaster) internal_->forecaster.emplace(internal_->bank.internal(), internal_->options);
   std::vector<Forecast> result;
-  for (const StateForecast& ahead : internal_->forecaster->ahead(internal_->filter.snapshot(), view(inputs), steps))
+  for (const StateForecast& ahead : internal_->filter.forecast(view(inputs), steps))
     result.push_back({to_vector(ahead.state), to_matrix(ahead.covariance), to_vector(ahead.mode_probability)});
   return result;
 }
 
 std::vector<double> BankFilter::snapshot() const {
-  std::vector<double> numbers = to_numbers(internal_->filter.snapshot());
+  std::vector<double> numbers = internal_->filter.snapshot();
   numbers.push_back(static_cast<double>(internal_->samples));  // the draws for the transforms depend on this number
   return numbers;
 }
@@ -222,7 +211,7 @@ void BankFilter::restore(const std::vector<double>& snapshot) {
   constexpr double most_samples = 9007199254740992.0;  // 2^53
   if (snapshot.empty() || !(snapshot.back() >= 0.0 && snapshot.back() <= most_samples))
     throw std::invalid_argument("the snapshot is damaged: its last value is not a number of samples");
-  internal_->filter.restore(snapshot_of({snapshot.begin(), snapshot.end() - 1}));
+  internal_->filter.restore({snapshot.data(), snapshot.size() - 1});
   internal_->samples = static_cast<Index>(snapshot.back());
 }
 

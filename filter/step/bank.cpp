@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "filter/step/student_noise.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/base/covariance.hpp"
 
 namespace modebank {

@@ -4,9 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "filter/step/drift_rates.hpp"
+#include "filter/step/drift.hpp"
 #include "filter/step/noise_factor.hpp"
-#include "filter/step/running_noise.hpp"
 #include "filter/step/transition_logit.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"

@@ -4,16 +4,26 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
 
-#include "filter/step/equations/predicted_mixture.hpp"
-#include "filter/step/stepper.hpp"
-#include "ident/base/covariance.hpp"
+#include "filter/step/drifting_filter.hpp"
+#include "filter/step/drifting_forecast.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/imm_filter.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
 using Eigen::Index;
 using Vector = Eigen::Ref<const Eigen::VectorXd>;
+
+/// The equations of a bank, by its sizes (with_sizes) and kind.
+struct BankFilter::Equations {
+  std::variant<ImmFilter<1, 1>, ImmFilter<2, 1>, ImmFilter<2, 2>, ImmFilter<3, 1>, ImmFilter<3, 3>,
+               ImmFilter<Eigen::Dynamic, Eigen::Dynamic>, DriftingFilter>
+      filter;
+};
 
 namespace {
 
@@ -22,174 +32,265 @@ const Bank& validated(const Bank& bank) {
   return bank;
 }
 
-/// Throws std::invalid_argument if the memory does not fit a filter of n states and K modes.
-void check_memory(const FilterMemory& memory, Index n, Index K) {
-  if (memory.means.rows() != n || memory.means.cols() != K || memory.covariances.rows() != n * n ||
-      memory.covariances.cols() != K || memory.mode_probability.size() != K)
-    throw std::invalid_argument("the snapshot does not fit a filter of " + std::to_string(K) + " modes and " +
-                                std::to_string(n) + " states");
-  const auto is_positive = [](double value) { return value > 0.0 && std::isfinite(value); };
-  if (!memory.means.allFinite() || !memory.covariances.allFinite() || !memory.mode_probability.allFinite() ||
-      memory.mode_probability.minCoeff() < 0.0 || !is_positive(memory.mode_probability.sum()))
-    throw std::invalid_argument("the snapshot has a number that is not finite or out of range");
-  for (Index k = 0; k < K; ++k)
-    if (!is_covariance(memory.covariances.col(k).reshaped(n, n)))
-      throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
+/// Calls f(filter) with the equations of the bank, which have not started.
+template <class F>
+auto with_equations(const Bank& bank, const FilterOptions& options, F f) {
+  if (!bank.running_noise.empty()) return f(DriftingFilter(bank));
+  return with_sizes(bank.structure.dimension(), bank.C.rows(),
+                    [&]<int N, int NY>() { return f(ImmFilter<N, NY>(bank, options)); });
 }
 
-/// The same check for drifting coefficients. `own`: state of this filter.
-void check_memory(const DriftState& drift, const DriftState& own) {
-  const auto same = [](const std::vector<Eigen::MatrixXd>& a, const std::vector<Eigen::MatrixXd>& b) {
-    return std::equal(a.begin(), a.end(), b.begin(), b.end(), [](const Eigen::MatrixXd& x, const Eigen::MatrixXd& y) {
-      return x.rows() == y.rows() && x.cols() == y.cols();
-    });
-  };
-  if (drift.theta.rows() != own.theta.rows() || drift.theta.cols() != own.theta.cols() || !same(drift.P, own.P) ||
-      drift.variance.size() != own.variance.size() || drift.level.size() != own.level.size())
-    throw std::invalid_argument("the snapshot is from a filter with other drifting coefficients");
-  const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
-  if (!drift.theta.allFinite() || !std::all_of(drift.P.begin(), drift.P.end(), variances) ||
-      !drift.variance.allFinite() || (drift.variance.array() <= 0.0).any() || !drift.level.allFinite() ||
-      (drift.level.array() < 0.0).any() || (drift.level.size() > 0 && drift.level.sum() <= 0.0))
-    throw std::invalid_argument("the snapshot has drift values that are not finite or out of range");
+/// Advances from the previous sample to the prediction of the next one, which is `steps` model steps later.
+template <class Filter>
+void advance(Filter& filter, const Vector& inputs, Index steps) {
+  for (Index i = 1; i < steps; ++i) filter.step(inputs);
+  filter.predict(inputs);
 }
 
 }  // namespace
 
-/// Decides whether the filter starts at a sample, makes a step, or waits, and clears old values of the estimate.
-struct BankFilter::Parts {
-  FilterEstimate estimate;
-  bool started = false;
-  SampleFeed feed;
-  Eigen::VectorXd initial_probability;
-  std::unique_ptr<Stepper> stepper;
-  Eigen::MatrixXd C;
-  CombinedInnovation combined;
-
-  Parts(const Bank& bank, const FilterOptions& options)
-      : feed(bank),
-        initial_probability(bank.initial_probability),
-        stepper(make_stepper(bank, options)),
-        C(bank.C),
-        combined(C.rows()) {
-    const Index n = bank.structure.dimension(), n_y = bank.C.rows();
-    estimate.prediction.resize(n);
-    estimate.innovation.resize(n_y);
-    estimate.innovation_covariance.resize(n_y, n_y);
-    estimate.state.resize(n);
-    estimate.covariance.resize(n, n);
-    estimate.pit.resize(n_y);
-    estimate.pit_width.setZero(n_y);
-    wait();
-  }
-
-  void take(double time_s, const Vector& input, const Vector& measurement) {
-    feed.push(time_s, input, measurement);
-    if (started && feed.steps() > longest_gap_steps) started = false;
-    if (started) {
-      step(measurement);
-    } else if (feed.can_start()) {
-      start();
-      started = true;
-    } else {
-      wait();
-    }
-  }
-
- private:
-  void start() {
-    clear_prediction();
-    stepper->start(feed.start());
-    estimate.mode_probability_predicted = stepper->mode_probability();
-    record_posterior();
-  }
-
-  void step(const Vector& measurement) {
-    stepper->advance(feed.inputs(), feed.steps());
-    stepper->combine(estimate.prediction, estimate.innovation_covariance);
-    estimate.mode_probability_predicted = stepper->predicted_probability();
-    estimate.steps = feed.steps();
-    estimate.log_density = stepper->update(measurement);
-    if (std::isnan(estimate.log_density))
-      clear_scores();
-    else
-      record_scores(measurement);
-    record_posterior();
-  }
-
-  void record_scores(const Vector& measurement) {
-    combined.observe(C, estimate.prediction, estimate.innovation_covariance, measurement);
-    estimate.innovation = combined.innovation;
-    estimate.nis = combined.nis;
-    stepper->transform(measurement, estimate.pit, estimate.pit_width, estimate.log_density);
-  }
-
-  void record_posterior() {
-    stepper->merge(estimate.state, estimate.covariance);
-    estimate.mode_probability = stepper->mode_probability();
-  }
-
-  /// No prediction was made for this sample.
-  void clear_prediction() {
-    estimate.prediction.setConstant(not_a_number);
-    estimate.innovation_covariance.setConstant(not_a_number);
-    estimate.steps = 0;
-    clear_scores();
-  }
-
-  void clear_scores() {
-    estimate.innovation.setConstant(not_a_number);
-    estimate.pit.setConstant(not_a_number);
-    estimate.pit_width.setZero();
-    estimate.nis = estimate.log_density = not_a_number;
-  }
-
-  /// Clears all values before a start.
-  void wait() {
-    clear_prediction();
-    estimate.state.setConstant(not_a_number);
-    estimate.covariance.setConstant(not_a_number);
-    estimate.mode_probability_predicted = initial_probability;
-    estimate.mode_probability = initial_probability;
-  }
-};
-
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : parts_(std::make_unique<Parts>(validated(bank), options)) {}
+    : feed_(validated(bank)),
+      earliest_input_(bank.structure.input_delay.earliest()),
+      C_(bank.C),
+      initial_probability_(bank.initial_probability),
+      equations_(with_equations(bank, options,
+                                [](auto filter) { return std::make_unique<Equations>(Equations{std::move(filter)}); })),
+      combined_(C_.rows()) {
+  const Index n = bank.structure.dimension(), n_y = C_.rows();
+  estimate_.prediction.resize(n);
+  estimate_.innovation.resize(n_y);
+  estimate_.innovation_covariance.resize(n_y, n_y);
+  estimate_.state.resize(n);
+  estimate_.covariance.resize(n, n);
+  estimate_.pit.resize(n_y);
+  estimate_.pit_width.setZero(n_y);
+  wait();
+}
 
 BankFilter::~BankFilter() = default;
 BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 
 const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
-  parts_->take(time_s, input, measurement);
-  return parts_->estimate;
+  feed_.push(time_s, input, measurement);
+  if (feed_.steps() > longest_gap_steps) started_ = false;
+  if (started_)
+    std::visit([&](auto& filter) { take(filter, measurement); }, equations_->filter);
+  else if (feed_.can_start())
+    std::visit([&](auto& filter) { start(filter); }, equations_->filter);
+  else
+    wait();
+  return estimate_;
 }
-
-const FilterEstimate& BankFilter::estimate() const { return parts_->estimate; }
-bool BankFilter::started() const { return parts_->started; }
 
 void BankFilter::restart() {
-  parts_->started = false;
-  parts_->feed.clear();
+  started_ = false;
+  feed_.clear();
 }
 
-FilterSnapshot BankFilter::snapshot() const {
-  FilterSnapshot snapshot;
-  parts_->stepper->save(snapshot);
-  snapshot.started = parts_->started;
-  snapshot.samples = parts_->feed.memory();
-  return snapshot;
+template <class Filter>
+void BankFilter::start(Filter& filter) {
+  clear_prediction();
+  filter.start(feed_.start());
+  estimate_.mode_probability_predicted = filter.mode_probability();
+  record_posterior(filter);
+  started_ = true;
 }
 
-void BankFilter::restore(const FilterSnapshot& snapshot) {
-  check_memory(snapshot, parts_->estimate.state.size(), parts_->initial_probability.size());
-  FilterMemory own;
-  parts_->stepper->save(own);
-  check_memory(snapshot.drift, own.drift);
-  parts_->feed.restore(snapshot.samples);  // throws before any change, like the check above
-  parts_->stepper->restore(snapshot);
-  parts_->started = snapshot.started;
+template <class Filter>
+void BankFilter::take(Filter& filter, const Vector& measurement) {
+  advance(filter, feed_.inputs(), feed_.steps());
+  filter.combine(estimate_.prediction, estimate_.innovation_covariance);
+  estimate_.mode_probability_predicted = filter.predicted_probability();
+  estimate_.steps = feed_.steps();
+  estimate_.log_density = filter.update(measurement);
+  if (std::isnan(estimate_.log_density)) {
+    clear_scores();
+  } else {
+    combined_.observe(C_, estimate_.prediction, estimate_.innovation_covariance, measurement);
+    estimate_.innovation = combined_.innovation;
+    estimate_.nis = combined_.nis;
+    filter.transform(measurement, estimate_.pit, estimate_.pit_width, estimate_.log_density);
+  }
+  record_posterior(filter);
+}
+
+template <class Filter>
+void BankFilter::record_posterior(Filter& filter) {
+  filter.merge(estimate_.state, estimate_.covariance);
+  estimate_.mode_probability = filter.mode_probability();
+}
+
+/// No prediction was made for this sample.
+void BankFilter::clear_prediction() {
+  estimate_.prediction.setConstant(not_a_number);
+  estimate_.innovation_covariance.setConstant(not_a_number);
+  estimate_.steps = 0;
+  clear_scores();
+}
+
+void BankFilter::clear_scores() {
+  estimate_.innovation.setConstant(not_a_number);
+  estimate_.pit.setConstant(not_a_number);
+  estimate_.pit_width.setZero();
+  estimate_.nis = estimate_.log_density = not_a_number;
+}
+
+/// Clears all values before a start.
+void BankFilter::wait() {
+  clear_prediction();
+  estimate_.state.setConstant(not_a_number);
+  estimate_.covariance.setConstant(not_a_number);
+  estimate_.mode_probability_predicted = initial_probability_;
+  estimate_.mode_probability = initial_probability_;
+}
+
+std::vector<StateForecast> BankFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) const {
+  const Index n = estimate_.state.size(), m = feed_.channels();
+  if (steps < 1) throw std::invalid_argument("steps: a forecast needs at least 1 step, not " + std::to_string(steps));
+  if (m > 0 && (inputs.rows() != m || inputs.cols() < steps - earliest_input_))
+    throw std::invalid_argument("inputs: a forecast of " + std::to_string(steps) + " steps takes " + std::to_string(m) +
+                                " inputs of " + std::to_string(std::max<Index>(steps - earliest_input_, 0)) +
+                                " samples or more, not " + std::to_string(inputs.rows()) + " of " +
+                                std::to_string(inputs.cols()));
+  if (!inputs.allFinite()) throw std::invalid_argument("inputs: planned inputs must be finite");
+  std::vector<StateForecast> result(static_cast<std::size_t>(steps),
+                                    {Eigen::VectorXd::Constant(n, not_a_number),
+                                     Eigen::MatrixXd::Constant(n, n, not_a_number), initial_probability_});
+  if (!started_) return result;
+  const Eigen::VectorXd none = Eigen::VectorXd::Constant(C_.rows(), not_a_number),
+                        held = Eigen::VectorXd::Constant(m, not_a_number);
+  SampleFeed feed = feed_;
+  std::visit(
+      [&](const auto& filter) {
+        auto ahead = filter.forecast();
+        for (Index i = 0; i < steps; ++i) {
+          feed.push(not_a_number, m > 0 && i < inputs.cols() ? Eigen::VectorXd(inputs.col(i)) : held, none);
+          ahead.step(feed.inputs());
+          StateForecast& one = result[static_cast<std::size_t>(i)];
+          ahead.moments(one.state, one.covariance);
+          one.mode_probability = ahead.predicted_probability();
+        }
+      },
+      equations_->filter);
+  return result;
+}
+
+namespace {
+
+constexpr double snapshot_format = 4.0;
+
+/// Appends the parts of a state to a list of numbers. The sizes of a matrix precede its entries.
+struct NumbersWriter {
+  std::vector<double>& numbers;
+
+  void operator()(double value) const { numbers.push_back(value); }
+  void operator()(Index value) const { numbers.push_back(static_cast<double>(value)); }
+  template <class Derived>
+  void operator()(const Eigen::PlainObjectBase<Derived>& matrix) const {
+    (*this)(matrix.rows());
+    (*this)(matrix.cols());
+    numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+  }
+  template <class Part>
+  void operator()(const std::vector<Part>& parts) const {
+    for (const Part& part : parts) (*this)(part);
+  }
+  template <int N>
+  void operator()(const Gaussian<N>& gaussian) const {
+    (*this)(gaussian.mean);
+    (*this)(gaussian.covariance);
+  }
+};
+
+/// Reads them into parts of the same sizes. Throws std::invalid_argument for other sizes.
+struct NumbersReader {
+  std::span<const double> left;
+
+  void operator()(double& value) { value = next(); }
+  void operator()(Index& value) {
+    constexpr double most = 9007199254740992.0;  // 2^53
+    const double number = next();
+    if (!(number >= 0.0 && number <= most && number == std::floor(number))) refuse();
+    value = static_cast<Index>(number);
+  }
+  template <class Derived>
+  void operator()(Eigen::PlainObjectBase<Derived>& matrix) {
+    Index rows = 0, cols = 0;
+    (*this)(rows);
+    (*this)(cols);
+    if (rows != matrix.rows() || cols != matrix.cols()) refuse();
+    for (double& value : matrix.reshaped()) value = next();
+  }
+  template <class Part>
+  void operator()(std::vector<Part>& parts) {
+    for (Part& part : parts) (*this)(part);
+  }
+  template <int N>
+  void operator()(Gaussian<N>& gaussian) {
+    (*this)(gaussian.mean);
+    (*this)(gaussian.covariance);
+  }
+  [[noreturn]] static void refuse() {
+    throw std::invalid_argument("the snapshot is damaged, or that of a filter with other sizes");
+  }
+  double next() {
+    if (left.empty()) refuse();
+    const double value = left.front();
+    left = left.subspan(1);
+    return value;
+  }
+};
+
+template <class Parts, class Numbers>
+void visit_parts(Parts parts, Numbers& numbers) {
+  std::apply([&](auto&... part) { (numbers(part), ...); }, parts);
+}
+
+}  // namespace
+
+std::vector<double> BankFilter::snapshot() const {
+  std::vector<double> numbers{snapshot_format, started_ ? 1.0 : 0.0};
+  NumbersWriter write{numbers};
+  std::visit([&](const auto& filter) { visit_parts(filter.parts(), write); }, equations_->filter);
+  visit_parts(feed_.parts(), write);
+  return numbers;
+}
+
+void BankFilter::restore(std::span<const double> snapshot) {
+  NumbersReader read{snapshot};
+  if (read.next() != snapshot_format)
+    throw std::invalid_argument("the snapshot comes from another version of the library, or not from a filter");
+  const double started = read.next();
+  if (started != 0.0 && started != 1.0) read.refuse();
+  Equations equations = *equations_;
+  SampleFeed feed = feed_;
+  std::visit(
+      [&](auto& filter) {
+        visit_parts(filter.parts(), read);
+        filter.settle();
+      },
+      equations.filter);
+  visit_parts(feed.parts(), read);
+  feed.settle();
+  if (!read.left.empty()) read.refuse();
+  *equations_ = std::move(equations);
+  feed_ = feed;
+  started_ = started == 1.0;
+}
+
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
+  with_equations(bank, options, [&](auto filter) {
+    for_each_sample(bank, run, [&](const SampleFeed& feed, Index k, bool starts) {
+      if (starts) return filter.start(feed.start());
+      advance(filter, feed.inputs(), feed.steps());
+      result(k) = filter.update(run.state.col(k));
+    });
+  });
+  return result;
 }
 
 }  // namespace modebank

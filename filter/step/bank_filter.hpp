@@ -2,10 +2,13 @@
 
 #include <Eigen/Core>
 #include <memory>
+#include <span>
+#include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/drift_rates.hpp"
 #include "filter/step/feed/sample_feed.hpp"
+#include "filter/step/innovation.hpp"
+#include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
@@ -27,22 +30,16 @@ struct FilterEstimate {
   Eigen::Index steps = 0;  ///< number of model steps from the previous sample; 0 if the filter (re)started here
 };
 
-/// State of a filter between two samples, for any bank and variant.
-struct FilterMemory {
-  Eigen::MatrixXd means;             ///< n x K
-  Eigen::MatrixXd covariances;       ///< n*n x K
+/// Prediction of one later sample, combined over all modes.
+struct StateForecast {
+  Eigen::VectorXd state;             ///< n
+  Eigen::MatrixXd covariance;        ///< n x n
   Eigen::VectorXd mode_probability;  ///< K
-  DriftState drift = {};             ///< of a mode that drifts (DriftingRecursion); empty otherwise
 };
 
-/// The complete state of a BankFilter, for continuing later.
-struct FilterSnapshot : FilterMemory {
-  bool started = false;
-  SampleFeed::Memory samples;
-};
-
-/// Filters one stream sample by sample, with a bank of any size and variant. All estimates, live and in evaluate_run,
-/// come from this class. A step does not allocate.
+/// Filters one stream sample by sample, with a bank of any size and variant: decides whether the filter starts at a
+/// sample, makes a step, or waits, and has the equations' results. All estimates, live and in evaluate_run, come from
+/// this class. A step does not allocate.
 class BankFilter {
  public:
   /// Throws std::invalid_argument for a bank that validate (bank.hpp) rejects, and for FilterVariant::kf with several
@@ -58,19 +55,49 @@ class BankFilter {
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// The result of the last step.
-  const FilterEstimate& estimate() const;
+  const FilterEstimate& estimate() const { return estimate_; }
   /// Resets the filter; the next complete measurement starts it again.
   void restart();
-  bool started() const;
+  bool started() const { return started_; }
 
-  FilterSnapshot snapshot() const;
-  /// Throws std::invalid_argument if the sizes of the snapshot's bank differ, or if it has invalid numbers. The filter
-  /// is then unchanged.
-  void restore(const FilterSnapshot& snapshot);
+  /// Predicts the next `steps` samples, one model step apart. Column i of `inputs` (m x c) is the input recorded at the
+  /// sample i + 1 ahead. Inputs act input_delay samples later, so as many of the last columns as the earliest input is
+  /// late have no effect and may be omitted. Before the filter's start, states are NaN. Throws std::invalid_argument
+  /// for too few inputs, for inputs that are not finite, and for steps below 1.
+  std::vector<StateForecast> forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index steps) const;
+
+  /// The complete state between two samples, as numbers that a program can store.
+  std::vector<double> snapshot() const;
+  /// Continues from a snapshot, to the bit. Throws std::invalid_argument if the sizes of the snapshot's bank differ, or
+  /// if it has invalid numbers. The filter is then unchanged.
+  void restore(std::span<const double> snapshot);
 
  private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
+  struct Equations;
+  SampleFeed feed_;
+  Eigen::Index earliest_input_;
+  Eigen::MatrixXd C_;
+  Eigen::VectorXd initial_probability_;
+  std::unique_ptr<Equations> equations_;
+  FilterEstimate estimate_;
+  CombinedInnovation combined_;
+  bool started_ = false;
+
+  template <class Filter>
+  void start(Filter& filter);
+  template <class Filter>
+  void take(Filter& filter, const Eigen::Ref<const Eigen::VectorXd>& measurement);
+  template <class Filter>
+  void record_posterior(Filter& filter);
+  void wait();
+  void clear_prediction();
+  void clear_scores();
 };
+
+/// Log predictive density of every sample of a run [nats], N; NaN where there is none. Rounded signals have the
+/// densities of the filter, whose R has the rounding, and not the masses of BankFilter's estimates. Stores nothing
+/// else. Throws the exceptions of check_run; checks no number of the bank, because candidates of an optimiser may be
+/// extreme.
+Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 }  // namespace modebank

@@ -4,35 +4,10 @@
 #include <utility>
 
 #include "filter/step/equations/arithmetic.hpp"
-#include "ident/base/linalg.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
 using Eigen::Index;
-
-namespace {
-
-/// Normalised square of the available signals.
-double normalised_square(const Eigen::VectorXd& innovation, const Eigen::MatrixXd& covariance) {
-  std::vector<Index> there;
-  for (Index i = 0; i < innovation.size(); ++i)
-    if (!std::isnan(innovation(i))) there.push_back(i);
-  if (there.empty()) return not_a_number;
-  const Cholesky factor(covariance(there, there));
-  return factor.definite() ? factor.whiten(Eigen::VectorXd(innovation(there))).squaredNorm() : not_a_number;
-}
-
-/// Copies the measured states of a filter's estimate.
-void take_measured(const FilterEstimate& said, FilterEstimate& measured) {
-  const Index n = said.innovation.size();
-  measured = said;
-  measured.prediction = said.prediction.head(n);
-  measured.state = said.state.head(n);
-  measured.covariance = said.covariance.topLeftCorner(n, n);
-}
-
-}  // namespace
 
 Bank combined_frame(const Bank& bank) {
   const Index n = bank.C.rows();
@@ -50,43 +25,66 @@ Bank combined_frame(const Bank& bank) {
   return frame;
 }
 
-CombinedFilter::CombinedFilter(std::vector<std::unique_ptr<AnyFilter>> filters, const std::vector<double>& start)
+CombinedFilter::CombinedFilter(std::vector<BankFilter> filters, const std::vector<double>& start)
     : filters_(std::move(filters)),
+      combines_(true),
       weights_(start, 1),
-      remembered_(weights_),
-      said_(filters_.size()),
-      log_densities_(filters_.size()) {}
+      log_densities_(filters_.size()),
+      estimate_(filters_.front().estimate()),
+      combined_(estimate_.innovation.size()),
+      apart_(estimate_.innovation) {
+  take_first();
+}
+
+CombinedFilter::CombinedFilter(BankFilter alone) : combines_(false), weights_(1), combined_(0) {
+  filters_.push_back(std::move(alone));
+}
 
 const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                                            const Eigen::Ref<const Eigen::VectorXd>& measurement) {
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    said_[i] = &filters_[i]->step(time_s, input, measurement);
-    log_densities_[i] = said_[i]->log_density;
-  }
-  if (said_.front()->steps == 0) weights_.restart();
-  combine();
+  if (!combines_) return filters_.front().step(time_s, input, measurement);
+  for (std::size_t i = 0; i < filters_.size(); ++i)
+    log_densities_[i] = filters_[i].step(time_s, input, measurement).log_density;
+  take_first();
+  if (estimate_.steps == 0) weights_.restart();
+  if (!std::isnan(estimate_.log_density)) mix(measurement);
   weights_.observe(log_densities_);
   return estimate_;
 }
 
-/// Combines the filters with their weights before this sample. If the first filter has no score, its estimate is used
-/// alone.
-void CombinedFilter::combine() {
-  take_measured(*said_.front(), estimate_);  // modes, steps and fields of a single filter
-  if (std::isnan(estimate_.log_density)) return;
-  estimate_.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
-  mix(filter::ForecastWeights::spoken_weights(weights_.weights(), log_densities_), estimate_);
+/// The first filter's estimate with the measured states alone. It is used as it is where that filter has no score.
+void CombinedFilter::take_first() {
+  const FilterEstimate& said = filters_.front().estimate();
+  const Index n = said.innovation.size();
+  estimate_.prediction = said.prediction.head(n);
+  estimate_.innovation = said.innovation;
+  estimate_.innovation_covariance = said.innovation_covariance;
+  estimate_.state = said.state.head(n);
+  estimate_.covariance = said.covariance.topLeftCorner(n, n);
+  estimate_.pit = said.pit;
+  estimate_.pit_width = said.pit_width;
+  estimate_.mode_probability_predicted = said.mode_probability_predicted;
+  estimate_.mode_probability = said.mode_probability;
+  estimate_.nis = said.nis;
+  estimate_.log_density = said.log_density;
+  estimate_.steps = said.steps;
 }
 
-void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed) const {
+/// Combines the filters with their weights before this sample.
+void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
+  FilterEstimate& mixed = estimate_;
   const Index n = mixed.innovation.size();
+  mixed.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
   for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit, &mixed.pit_width})
     vector->setZero();
   for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
+  double spoken = 0.0;
   const auto each = [&](auto add) {
-    for (std::size_t i = 0; i < share.size(); ++i)
-      if (share[i] > 0.0) add(share[i], *said_[i]);
+    for (std::size_t i = 0; i < filters_.size(); ++i)
+      if (!std::isnan(log_densities_[i])) add(weights_.weights()[i] / spoken, filters_[i].estimate());
   };
+  for (std::size_t i = 0; i < filters_.size(); ++i)
+    if (!std::isnan(log_densities_[i])) spoken += weights_.weights()[i];
   each([&](double weight, const FilterEstimate& said) {
     mixed.prediction += weight * said.prediction.head(n);
     mixed.innovation += weight * said.innovation;
@@ -95,30 +93,31 @@ void CombinedFilter::mix(const std::vector<double>& share, FilterEstimate& mixed
     mixed.pit_width += weight * said.pit_width;
   });
   each([&](double weight, const FilterEstimate& said) {
-    const Eigen::VectorXd apart = (said.innovation - mixed.innovation)
-                                      .array()
-                                      .isNaN()
-                                      .select(Eigen::VectorXd::Zero(n), said.innovation - mixed.innovation);
-    small::add_about_mean(mixed.innovation_covariance, weight, said.innovation_covariance, apart);
-    small::add_about_mean(mixed.covariance, weight, said.covariance.topLeftCorner(n, n),
-                          said.state.head(n) - mixed.state);
+    apart_ = said.innovation - mixed.innovation;
+    for (double& value : apart_) value = std::isnan(value) ? 0.0 : value;
+    small::add_about_mean(mixed.innovation_covariance, weight, said.innovation_covariance, apart_);
+    apart_ = said.state.head(n) - mixed.state;
+    small::add_about_mean(mixed.covariance, weight, said.covariance.topLeftCorner(n, n), apart_);
   });
-  mixed.nis = normalised_square(mixed.innovation, mixed.innovation_covariance);
+  combined_.innovation = mixed.innovation;
+  combined_.normalise(mixed.innovation_covariance, measurement);
+  mixed.nis = combined_.nis;
+}
+
+CombinedFilter::Snapshot CombinedFilter::snapshot() const {
+  Snapshot snapshot{{}, weights_};
+  for (const BankFilter& filter : filters_) snapshot.filters.push_back(filter.snapshot());
+  return snapshot;
+}
+
+void CombinedFilter::restore(const Snapshot& snapshot) {
+  for (std::size_t i = 0; i < filters_.size(); ++i) filters_[i].restore(snapshot.filters[i]);
+  weights_ = snapshot.weights;
 }
 
 void CombinedFilter::restart() {
-  for (const auto& filter : filters_) filter->restart();
+  for (BankFilter& filter : filters_) filter.restart();
   weights_.restart();
-}
-
-void CombinedFilter::remember() {
-  for (const auto& filter : filters_) filter->remember();
-  remembered_ = weights_;
-}
-
-void CombinedFilter::go_back() {
-  for (const auto& filter : filters_) filter->go_back();
-  weights_ = remembered_;
 }
 
 }  // namespace modebank

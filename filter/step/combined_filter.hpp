@@ -1,9 +1,8 @@
 #pragma once
 
-#include <memory>
 #include <vector>
 
-#include "filter/step/any_filter.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "modebank/filter/forecast_weights.hpp"
 
 namespace modebank {
@@ -19,26 +18,38 @@ Bank combined_frame(const Bank& bank);
 /// the run. Prediction, state and covariances are those of the mixture, for the measured states. With one signal the
 /// transform is that of the mixture. With several signals it is mixed by the joint weights, which is exact for the
 /// first signal. Modes are those of the first filter.
-class CombinedFilter final : public AnyFilter {
+class CombinedFilter {
  public:
   /// `start`: weights at the start and after every gap.
-  CombinedFilter(std::vector<std::unique_ptr<AnyFilter>> filters, const std::vector<double>& start);
+  CombinedFilter(std::vector<BankFilter> filters, const std::vector<double>& start);
+  /// A single filter keeps its own estimates, with its lagged states.
+  explicit CombinedFilter(BankFilter alone);
+
+  /// As BankFilter::step.
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
-                             const Eigen::Ref<const Eigen::VectorXd>& measurement) override;
-  bool started() const override { return filters_.front()->started(); }
-  void restart() override;
-  void remember() override;
-  void go_back() override;
+                             const Eigen::Ref<const Eigen::VectorXd>& measurement);
+  bool started() const { return filters_.front().started(); }
+  void restart();
+
+  struct Snapshot {
+    std::vector<std::vector<double>> filters;
+    filter::ForecastWeights weights;
+  };
+  Snapshot snapshot() const;
+  /// Continues from a snapshot of this filter.
+  void restore(const Snapshot& snapshot);
 
  private:
-  std::vector<std::unique_ptr<AnyFilter>> filters_;
-  filter::ForecastWeights weights_, remembered_;
-  std::vector<const FilterEstimate*> said_;
+  std::vector<BankFilter> filters_;
+  bool combines_;
+  filter::ForecastWeights weights_;
   std::vector<double> log_densities_;
   FilterEstimate estimate_;
+  CombinedInnovation combined_;
+  Eigen::VectorXd apart_;  ///< workspace of size n_y
 
-  void combine();
-  void mix(const std::vector<double>& share, FilterEstimate& mixed) const;
+  void take_first();
+  void mix(const Eigen::Ref<const Eigen::VectorXd>& measurement);
 };
 
 }  // namespace modebank

@@ -28,47 +28,47 @@ Eigen::MatrixXd contracted(const LinearStructure& s, const Eigen::VectorXd& scal
   return theta;
 }
 
-DriftingForecast::DriftingForecast(const Bank& bank)
-    : structure_(bank.structure),
-      rates_(bank.drift.rates),
-      running_(bank.running_noise),
-      rounding_(bank.rounding_variance()),
-      scale_(bank.drift.scale),
-      inverse_scale_(scale_.cwiseInverse()),
-      theta0_(scaled_coefficients(structure_, bank.theta(0), scale_)),
-      stable_theta0_(contracted(structure_, scale_, theta0_)),
-      P_(static_cast<std::size_t>(structure_.states)),
-      h_(structure_.regressors()),
-      direction_(wandering_direction(bank)),
-      mixing_{Eigen::MatrixXd(running_.levels(), running_.levels())},
-      Z_(static_cast<std::size_t>(running_.levels())),
-      cross_(static_cast<std::size_t>(structure_.states)),
+DriftingForecast::DriftingForecast(DriftingModel model)
+    : model_(std::move(model)),
+      stable_theta0_(contracted(model_.structure, model_.scale, model_.theta0)),
+      P_(static_cast<std::size_t>(model_.structure.states)),
+      h_(model_.structure.regressors()),
+      mixing_{Eigen::MatrixXd(model_.running.levels(), model_.running.levels())},
+      Z_(static_cast<std::size_t>(model_.running.levels())),
+      cross_(P_.size()),
       next_cross_(cross_),
-      of_theta_(structure_.states) {}
+      of_theta_(model_.structure.states) {}
 
-/// Mean and covariance of theta at the origin, of all levels together.
-void DriftingForecast::merge_levels(const DriftState& origin) {
-  const LinearStructure& s = structure_;
-  const Eigen::VectorXd mean = origin.theta * origin.level;
-  deviation_ = mean.reshaped(s.regressors(), s.states) - theta0_;
-  for (Index i = 0; i < s.states; ++i) {
-    Eigen::MatrixXd& P = P_[static_cast<std::size_t>(i)];
-    P.setZero(s.regressors(), s.regressors());
-    for (Index j = 0; j < origin.level.size(); ++j) {
-      const Eigen::VectorXd away = (origin.theta.col(j) - mean).segment(i * s.regressors(), s.regressors());
-      P += origin.level(j) * origin.P[static_cast<std::size_t>(j * s.states + i)];
-      P += origin.level(j) / origin.variance(i) * away * away.transpose();
-    }
-  }
+DriftingForecast DriftingFilter::forecast() const {
+  DriftingForecast ahead(model_);
+  ahead.start(*this);
+  return ahead;
 }
 
-void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin) {
-  const LinearStructure& s = structure_;
+/// Mean and covariance of theta at the origin, of all levels together.
+void DriftingForecast::merge_levels(const DriftingFilter& origin) {
+  const Index n = v_.size();
+  deviation_.setZero(h_.size(), n);
+  for (Index j = 0; j < level_.size(); ++j) deviation_ += level_(j) * origin.theta().middleCols(j * n, n);
+  for (Index i = 0; i < n; ++i) {
+    Eigen::MatrixXd& P = P_[static_cast<std::size_t>(i)];
+    P.setZero(h_.size(), h_.size());
+    for (Index j = 0; j < level_.size(); ++j) {
+      const Eigen::VectorXd away = origin.theta().col(j * n + i) - deviation_.col(i);
+      P += level_(j) * origin.P(j, i);
+      P += level_(j) / v_(i) * away * away.transpose();
+    }
+  }
+  deviation_ -= model_.theta0;
+}
+
+void DriftingForecast::start(const DriftingFilter& origin) {
+  const LinearStructure& s = model_.structure;
+  v_ = origin.variance();
+  level_ = origin.level();
+  z_ = origin.z();
   merge_levels(origin);
-  v_ = origin.variance;
-  level_ = origin.level;
-  z_ = z;
-  towards_ = theta0_;
+  towards_ = model_.theta0;
   of_origin_ = 1.0;
   of_drift_ = 0.0;
   for (Eigen::MatrixXd& Z : Z_) Z.setZero(s.dimension(), s.dimension());
@@ -80,8 +80,8 @@ void DriftingForecast::start(const Eigen::Ref<const Eigen::VectorXd>& z, const D
 
 /// The levels switch. They differ only in the covariance of the lagged errors.
 void DriftingForecast::mix() {
-  if (running_.level.size() == 0) return;
-  mixing_weights(running_.switching, Eigen::VectorXd(level_), level_, mixing_);
+  if (!model_.switches()) return;
+  mixing_weights(model_.running.switching, Eigen::VectorXd(level_), level_, mixing_);
   floor_probabilities(level_);
   for (Index j = 0; j < level_.size(); ++j) {
     Eigen::MatrixXd& mixed = next_Z_[static_cast<std::size_t>(j)];
@@ -92,47 +92,46 @@ void DriftingForecast::mix() {
 }
 
 void DriftingForecast::pass_time() {
-  const double leak = rates_.leak;
+  const double leak = model_.rates.leak;
   deviation_ *= leak;
   of_origin_ *= leak * leak;
-  of_drift_ = leak * leak * of_drift_ + rates_.q;
+  of_drift_ = leak * leak * of_drift_ + model_.rates.q;
   for (Eigen::MatrixXd& C : cross_) C *= leak;
 }
 
 void DriftingForecast::step(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
   if (steps_ > 0) pass_time();
   if (++steps_ == 2) {
-    deviation_ = contracted(structure_, scale_, towards_ + deviation_) - stable_theta0_;
+    deviation_ = contracted(model_.structure, model_.scale, towards_ + deviation_) - stable_theta0_;
     towards_ = stable_theta0_;
   }
   theta_ = towards_ + deviation_;
   mix();
   predict_mean(inputs);
   propagate_errors();
-  push();
+  model_.push(prediction_, z_);
   bound();
 }
 
 void DriftingForecast::predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs) {
-  fill_regressor(structure_, z_, inputs, h_);
-  h_.array() *= inverse_scale_.array();
-  prediction_ = z_.head(structure_.states) + theta_.transpose() * h_;
+  model_.fill(z_, inputs, h_);
+  prediction_ = z_.head(model_.structure.states) + theta_.transpose() * h_;
   for (double& value : prediction_) value = std::clamp(value, -largest_mean, largest_mean);
 }
 
 void DriftingForecast::propagate_errors() {
-  const Index n = structure_.states, dimension = structure_.dimension();
-  of_lagged_ = (inverse_scale_.head(dimension).asDiagonal() * theta_.topRows(dimension)).transpose();
+  const Index n = model_.structure.states, dimension = model_.structure.dimension();
+  of_lagged_ = (model_.inverse_scale.head(dimension).asDiagonal() * theta_.topRows(dimension)).transpose();
   of_lagged_.leftCols(n).diagonal().array() += 1.0;
   through_.resize(n, dimension);
   for (Index i = 0; i < n; ++i) through_.row(i).noalias() = h_.transpose() * cross_[static_cast<std::size_t>(i)];
   for (Index i = 0; i < n; ++i) {
     const auto at = static_cast<std::size_t>(i);
     Eigen::VectorXd Ph = P_[at].selfadjointView<Eigen::Lower>() * h_;
-    if (direction_.size() == 0)
+    if (model_.direction.size() == 0)
       Ph = of_origin_ * Ph + of_drift_ * h_;
     else
-      Ph = of_origin_ * Ph + of_drift_ * direction_.col(i).dot(h_) * direction_.col(i);
+      Ph = of_origin_ * Ph + of_drift_ * model_.direction.col(i).dot(h_) * model_.direction.col(i);
     of_theta_(i) = std::max(0.0, h_.dot(Ph));
     Eigen::MatrixXd& next = next_cross_[at];
     next.leftCols(n).noalias() = cross_[at] * of_lagged_.transpose();
@@ -145,7 +144,7 @@ void DriftingForecast::propagate_errors() {
 }
 
 void DriftingForecast::propagate_level(std::size_t level) {
-  const Index n = structure_.states, lagged = structure_.dimension() - n;
+  const Index n = model_.structure.states, lagged = model_.structure.dimension() - n;
   const Eigen::MatrixXd& Z = Z_[level];
   with_lagged_.noalias() = of_lagged_ * Z;
   covariance_.noalias() = with_lagged_ * of_lagged_.transpose();
@@ -153,7 +152,7 @@ void DriftingForecast::propagate_level(std::size_t level) {
   covariance_ += mixed + mixed.transpose();
   with_lagged_ += through_;
   for (Index i = 0; i < n; ++i) {
-    const double noise = level_variance(running_, i, static_cast<Index>(level), rounding_(i) / v_(i));
+    const double noise = model_.level_variance(i, static_cast<Index>(level), v_(i));
     covariance_(i, i) += v_(i) * (noise + of_theta_(i));
   }
   Eigen::MatrixXd& next = next_Z_[level];
@@ -161,12 +160,6 @@ void DriftingForecast::propagate_level(std::size_t level) {
   next.topRightCorner(n, lagged) = with_lagged_.leftCols(lagged);
   next.bottomLeftCorner(lagged, n) = with_lagged_.leftCols(lagged).transpose();
   next.bottomRightCorner(lagged, lagged) = Z.topLeftCorner(lagged, lagged);
-}
-
-void DriftingForecast::push() {
-  const Index n = structure_.states;
-  for (Index i = z_.size() - 1; i >= n; --i) z_(i) = z_(i - n);
-  z_.head(n) = prediction_;
 }
 
 Eigen::MatrixXd DriftingForecast::state_covariance() const {

@@ -3,8 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/step/bank.hpp"
-#include "filter/step/drifting_recursion.hpp"
+#include "filter/step/drifting_filter.hpp"
 
 namespace modebank {
 
@@ -22,57 +21,56 @@ namespace modebank {
 /// phi are the coefficients of the lagged samples. v and the joint covariance of d and the lagged e start with their
 /// values at the origin.
 ///
-/// Noise levels (running_noise.hpp) go on switching: each has its own covariance of the lagged e, and these are mixed
+/// Noise levels (drift.hpp) go on switching: each has its own covariance of the lagged e, and these are mixed
 /// before each step, as in the filter. theta has one Gaussian, the mixture of the levels at the origin, so all levels
 /// have one mean.
 class DriftingForecast {
  public:
-  explicit DriftingForecast(const Bank& bank);
+  explicit DriftingForecast(DriftingModel model);
+  explicit DriftingForecast(const Bank& bank) : DriftingForecast(DriftingModel(bank)) {}
 
-  /// The filter's z and coefficients after a sample (DriftingRecursion).
-  void start(const Eigen::Ref<const Eigen::VectorXd>& z, const DriftState& origin);
+  void start(const DriftingFilter& origin);
   void step(const Eigen::Ref<const Eigen::VectorXd>& inputs);
 
   const Eigen::VectorXd& prediction() const { return prediction_; }  ///< n
   /// n x n, covariance of the prediction's error, with all levels combined or in one of them.
-  Eigen::MatrixXd covariance() const { return state_covariance().topLeftCorner(structure_.states, structure_.states); }
+  Eigen::MatrixXd covariance() const { return state_covariance().topLeftCorner(v_.size(), v_.size()); }
   auto covariance(Eigen::Index level) const {
-    return Z_[static_cast<std::size_t>(level)].topLeftCorner(structure_.states, structure_.states);
+    return Z_[static_cast<std::size_t>(level)].topLeftCorner(v_.size(), v_.size());
   }
   const Eigen::VectorXd& level_probability() const { return level_; }  ///< J, of the prediction
-  const Eigen::VectorXd& state() const { return z_; }                  ///< the prediction and the preceding samples
-  Eigen::MatrixXd state_covariance() const;
+  Eigen::VectorXd predicted_probability() const { return Eigen::VectorXd::Ones(1); }
+  /// The prediction with the preceding samples, and its covariance with the factor of the horizon.
+  void moments(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) const {
+    mean = z_;
+    covariance = model_.running.factor_at(steps_) * state_covariance();
+  }
 
  private:
-  LinearStructure structure_;
-  DriftRates rates_;
-  RunningNoise running_;
-  Eigen::VectorXd rounding_;  ///< n, variance of rounding
-  Eigen::VectorXd scale_, inverse_scale_;
-  Eigen::MatrixXd theta0_, stable_theta0_;  ///< r x n, coefficients of scaled regressors
-  std::vector<Eigen::MatrixXd> P_;          ///< n matrices r x r, covariances of theta at the origin, divided by v
-  Eigen::VectorXd v_, level_;               ///< sizes: n, J
+  DriftingModel model_;
+  Eigen::MatrixXd stable_theta0_;   ///< r x n, coefficients of scaled regressors
+  std::vector<Eigen::MatrixXd> P_;  ///< n matrices r x r, covariances of theta at the origin, divided by v
+  Eigen::VectorXd v_, level_;       ///< sizes: n, J
   Eigen::VectorXd z_, h_, prediction_;
-  Eigen::MatrixXd towards_, deviation_, theta_;      ///< r x n: value towards which coefficients leak, and the
-                                                     ///< difference from it
-  Eigen::MatrixXd direction_;                        ///< r x n, direction of the drift; empty if all coefficients drift
-  double of_origin_ = 1.0, of_drift_ = 0.0;          ///< cov(d) / v = of_origin P + of_drift W
-  MixingWeights mixing_;                             ///< of the levels
-  std::vector<Eigen::MatrixXd> Z_, next_Z_;          ///< per level: covariance of the lagged errors
-  std::vector<Eigen::MatrixXd> cross_, next_cross_;  ///< per output r x dimension: covariance of d with the lagged
-                                                     ///< errors
+  Eigen::MatrixXd towards_, deviation_, theta_;         ///< r x n: value towards which coefficients leak, and the
+                                                        ///< difference from it
+  double of_origin_ = 1.0, of_drift_ = 0.0;             ///< cov(d) / v = of_origin P + of_drift W
+  MixingWeights mixing_;                                ///< of the levels
+  std::vector<Eigen::MatrixXd> Z_, next_Z_;             ///< per level: covariance of the lagged errors
+  std::vector<Eigen::MatrixXd> cross_, next_cross_;     ///< per output r x dimension: covariance of d with the lagged
+                                                        ///< errors
   Eigen::MatrixXd covariance_, with_lagged_, through_;  ///< of one level; sizes: n x n, n x dimension, n x dimension
   Eigen::VectorXd of_theta_;                            ///< n, variance of the prediction due to d, divided by v
   Eigen::MatrixXd of_lagged_;                           ///< n x dimension, phi of each output
-  int steps_ = 0;
+  Eigen::Index steps_ = 0;
 
-  void merge_levels(const DriftState& origin);
+  Eigen::MatrixXd state_covariance() const;
+  void merge_levels(const DriftingFilter& origin);
   void mix();
   void pass_time();
   void predict_mean(const Eigen::Ref<const Eigen::VectorXd>& inputs);
   void propagate_errors();
   void propagate_level(std::size_t level);
-  void push();
   void bound();
 };
 

@@ -22,6 +22,12 @@ double largest(const std::vector<double>& values) {
   return most;
 }
 
+void require_one_each(const std::vector<double>& weights, const std::vector<double>& log_densities) {
+  if (weights.size() != log_densities.size())
+    throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
+                                std::to_string(weights.size()) + " forecasters");
+}
+
 }  // namespace
 
 ForecastWeights::ForecastWeights(std::size_t forecasters, std::ptrdiff_t horizon)
@@ -47,9 +53,6 @@ void ForecastWeights::restart() {
 }
 
 void ForecastWeights::observe(const std::vector<double>& log_densities) {
-  if (log_densities.size() != evidence_.size())
-    throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
-                                std::to_string(evidence_.size()) + " forecasters");
   // A forecaster without a value gets the density of the mixture. Its weight then does not depend on the scores of the
   // other forecasters.
   const double together = mixed_log_density(weights_, log_densities);
@@ -134,9 +137,7 @@ std::vector<double> ForecastWeights::stacked(const std::vector<std::vector<doubl
 
 std::vector<double> ForecastWeights::spoken_weights(const std::vector<double>& weights,
                                                     const std::vector<double>& log_densities) {
-  if (weights.size() != log_densities.size())
-    throw std::invalid_argument(std::to_string(log_densities.size()) + " log densities of " +
-                                std::to_string(weights.size()) + " forecasters");
+  require_one_each(weights, log_densities);
   std::vector<double> spoken(weights.size(), 0.0);
   double sum = 0.0;
   for (std::size_t i = 0; i < weights.size(); ++i)
@@ -148,12 +149,15 @@ std::vector<double> ForecastWeights::spoken_weights(const std::vector<double>& w
 
 double ForecastWeights::mixed_log_density(const std::vector<double>& weights,
                                           const std::vector<double>& log_densities) {
-  const std::vector<double> spoken = spoken_weights(weights, log_densities);
+  require_one_each(weights, log_densities);
   const double most = largest(log_densities);
   if (!std::isfinite(most)) return most;
-  double sum = 0.0;
-  for (std::size_t i = 0; i < spoken.size(); ++i)
-    if (spoken[i] > 0.0) sum += spoken[i] * std::exp(log_densities[i] - most);
+  double spoken = 0.0, sum = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (!std::isnan(log_densities[i])) spoken += weights[i];
+  for (std::size_t i = 0; i < weights.size(); ++i)
+    if (!std::isnan(log_densities[i]) && weights[i] > 0.0)
+      sum += weights[i] / spoken * std::exp(log_densities[i] - most);
   return most + std::log(sum);
 }
 

@@ -1,6 +1,7 @@
 #include "filter/step/likelihood_gradient.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 #include <vector>
 
@@ -30,26 +31,31 @@ struct ByState {
   }
 };
 
-/// Stores the states of a stretch. A stretch that is not the last is filtered again before the way back over it.
+/// Stores every step of a stretch. A stretch that is not the last is filtered again before the way back over it.
 template <int N, int NY>
 class ReversePass {
   using StateVector = Eigen::Matrix<double, N, 1>;
   using StateMatrix = Eigen::Matrix<double, N, N>;
   using SignalMatrix = Eigen::Matrix<double, NY, NY>;
   using Gain = Eigen::Matrix<double, N, NY>;
+  static constexpr int moments = N == Eigen::Dynamic ? Eigen::Dynamic : N + N * N;
 
  public:
   ReversePass(const Bank& bank, const Trajectory& run, const FilterOptions& options)
       : run_(run),
         model_(bank, options),
         instants_(bank, run),
-        step_(model_),
         after_(initial_state(model_)),
-        stretch_length_(stretch_length(bank)),
+        stretch_length_(std::min(stretch_length(bank), instants_.count())),
+        before_(static_cast<std::size_t>(stretch_length_), after_),
+        steps_(static_cast<std::size_t>(stretch_length_), FilterStep<N, NY>(model_)),
         by_(bank.structure.dimension(), bank.mode_count()),
         by_before_(by_),
         by_weight_(bank.mode_count(), bank.mode_count()) {
     const Index n = bank.structure.dimension(), K = bank.mode_count();
+    moments_.resize(K, n + n * n);
+    by_moments_.resize(n + n * n, K);
+    by_moments_before_.resize(n + n * n, K);
     for (const Mode& mode : bank.modes)
       sum_.modes.push_back(
           {{MatrixXd::Zero(n, n), MatrixXd::Zero(n, mode.model.B.cols()), VectorXd::Zero(n)}, MatrixXd::Zero(n, n)});
@@ -62,7 +68,7 @@ class ReversePass {
     std::vector<FilterState<N>> kept;  // state before each stretch of moments
     for (Index first = 0; first < instants_.count(); first += stretch_length_) {
       kept.push_back(after_);
-      follow_stretch(first);
+      sum_.log_likelihood = follow_stretch(first, sum_.log_likelihood);
     }
     for (Index s = std::ssize(kept); s-- > 0;) {
       const Index first = s * stretch_length_, end = std::min(first + stretch_length_, instants_.count());
@@ -70,7 +76,7 @@ class ReversePass {
         after_ = kept[static_cast<std::size_t>(s)];
         follow_stretch(first);
       }
-      for (Index t = end; t-- > first;) back_over(t, before_[static_cast<std::size_t>(t - first)]);
+      for (Index t = end; t-- > first;) back_over(t, static_cast<std::size_t>(t - first));
     }
     return std::move(sum_);
   }
@@ -79,56 +85,75 @@ class ReversePass {
   const Trajectory& run_;
   FilterModel<N, NY> model_;
   RunInstants instants_;
-  FilterStep<N, NY> step_;
   FilterState<N> after_;  ///< after the present moment
   Index stretch_length_;
-  std::vector<FilterState<N>> before_;  ///< before each moment of a stretch
-  ByState<N> by_, by_before_;           ///< derivatives of all later moments
-  VectorXd by_prior_;                   ///< derivatives with respect to the mode probabilities before the measurement
-  MatrixXd by_weight_;                  ///< K x K
+  std::vector<FilterState<N>> before_;    ///< before each moment of a stretch
+  std::vector<FilterStep<N, NY>> steps_;  ///< to each moment of a stretch
+  ByState<N> by_, by_before_;             ///< derivatives of all later moments
+  VectorXd by_prior_;                     ///< derivatives with respect to the mode probabilities before the measurement
+  MatrixXd by_weight_;                    ///< K x K
+  Eigen::Matrix<double, Eigen::Dynamic, moments> moments_;  ///< of the modes before the mixing, K x (n + n^2)
+  Eigen::Matrix<double, moments, Eigen::Dynamic> by_moments_, by_moments_before_;
   BankGradient sum_;
 
-  /// States of a stretch take 64 MB, but a stretch has at least a hundred moments.
+  /// The steps of a stretch stay in the processor's cache.
   static Index stretch_length(const Bank& bank) {
-    const Index n = bank.structure.dimension();
-    return std::max<Index>(100, 8'000'000 / (bank.mode_count() * (n * n + n + 16)));
+    const Index n = bank.structure.dimension(), K = bank.mode_count();
+    return std::max<Index>(16, 20'000 / (K * (8 * n * n + K + 32)));
   }
 
-  /// Filters a stretch of moments from `after_` on.
-  void follow_stretch(Index first) {
-    before_.clear();
+  /// Filters a stretch of moments from `after_` on. Returns the log-likelihood from `sum` on.
+  double follow_stretch(Index first, double sum = 0.0) {
     for (Index t = first; t < std::min(first + stretch_length_, instants_.count()); ++t) {
-      before_.push_back(after_);
-      step_to(model_, instants_, t, run_, after_, step_);
+      const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
+      before_[static_cast<std::size_t>(t - first)] = after_;
+      FilterStep<N, NY>& step = steps_[static_cast<std::size_t>(t - first)];
+      if (instant.starts) {
+        start(model_, instant.start, after_);
+        continue;
+      }
+      predict(model_, after_, instants_.inputs.col(t), step);
+      if (instant.sample < 0) {
+        skip_measurement(step, after_);
+      } else if (const double log_density = update(model_, run_.state.col(instant.sample), step, after_);
+                 !std::isnan(log_density)) {
+        sum += log_density;
+      }
     }
+    return sum;
   }
 
-  void back_over(Index t, const FilterState<N>& before) {
+  /// Goes back over moment t of the run, which is `at` in its stretch.
+  void back_over(Index t, std::size_t at) {
     const Instant& instant = instants_.instants[static_cast<std::size_t>(t)];
+    const FilterState<N>& before = before_[at];
+    const FilterStep<N, NY>& step = steps_[at];
     if (instant.starts) {  // the mean at the start is the measurement itself
       for (const Gaussian<N>& mode : by_.modes) sum_.start_covariance += mode.covariance;
-      return by_.clear();
+      by_.clear();
+    } else {
+      by_prior_ = by_.probability;
+      if (instant.sample >= 0 && step.partial.missing < run_.state.rows())
+        back_over_measurement(step, run_.state.col(instant.sample));
+      const bool one = model_.mode_count() == 1;
+      for (std::size_t j = 0; j < by_.modes.size(); ++j)
+        back_over_motion(j, one ? before.modes[0] : step.mixed[j], instants_.inputs.col(t));
+      if (!one) back_over_mixing(step, before);
     }
     after_ = before;
-    by_prior_ = by_.probability;
-    if (step_to(model_, instants_, t, run_, after_, step_))
-      back_over_measurement(run_.state.col(instant.sample), after_.mode_probability);
-    const bool one = model_.mode_count() == 1;
-    for (std::size_t j = 0; j < by_.modes.size(); ++j)
-      back_over_motion(j, one ? before.modes[0] : step_.mixed[j], instants_.inputs.col(t));
-    if (!one) back_over_mixing(before);
   }
 
   /// Goes back over Bayes' rule and the update of every mode. Converts derivatives with respect to the estimates into
   /// derivatives with respect to the predictions.
   template <class Y>
-  void back_over_measurement(const Y& y, const VectorXd& posterior) {
+  void back_over_measurement(const FilterStep<N, NY>& step, const Y& y) {
+    const VectorXd& posterior = after_.mode_probability;
     const VectorXd by_log = posterior.array() * (1.0 + by_.probability.array() - by_.probability.dot(posterior));
-    by_prior_ = (step_.predicted_probability.array() >= impossible_probability)
-                    .select(by_log.cwiseQuotient(step_.predicted_probability), 0.0);
+    by_prior_ = (step.predicted_probability.array() >= impossible_probability)
+                    .select(by_log.cwiseQuotient(step.predicted_probability), 0.0);
     SignalMatrix by_R = SignalMatrix::Zero(y.size(), y.size());
     for (std::size_t j = 0; j < by_.modes.size(); ++j)
-      by_R += back_over_update(step_.partial.missing > 0 ? step_.partial.C : model_.C, step_.kalman[j],
+      by_R += back_over_update(step.partial.missing > 0 ? step.partial.C : model_.C, step.kalman[j],
                                by_log(static_cast<Index>(j)), by_.modes[j]);
     for (Index i = 0; i < y.size(); ++i)  // R of a missing signal is not a parameter of the bank
       if (is_missing(y(i))) {
@@ -172,26 +197,38 @@ class ReversePass {
     by.covariance = (F.transpose() * by.covariance * F).eval();
   }
 
+  StateVector combined_mean(const FilterState<N>& state) const {
+    StateVector mean(state.modes[0].mean.size());
+    combine_means(state, mean);
+    return mean;
+  }
+
   /// Goes back over the mixing. Every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
-  /// (The derivative of the mixture's covariance with respect to its mean is zero.)
-  void back_over_mixing(const FilterState<N>& before) {
-    const Index K = model_.mode_count();
-    by_before_.clear();
-    for (Index j = 0; j < K; ++j)
-      for (Index i = 0; i < K; ++i) {
-        const Gaussian<N>& from = before.modes[static_cast<std::size_t>(i)];
-        const Gaussian<N>& to = by_.modes[static_cast<std::size_t>(j)];
-        const StateVector off = from.mean - step_.mixed[static_cast<std::size_t>(j)].mean, by_off = to.covariance * off;
-        const double weight = step_.mixing.matrix(i, j);
-        Gaussian<N>& sum = by_before_.modes[static_cast<std::size_t>(i)];
-        sum.mean += weight * (to.mean + 2.0 * by_off);
-        sum.covariance += weight * to.covariance;
-        by_weight_(i, j) = to.mean.dot(from.mean) + to.covariance.cwiseProduct(from.covariance).sum() + off.dot(by_off);
-      }
-    const VectorXd& prior = step_.predicted_probability;
+  /// Its mean M_j and second moment S_j about any point r, which the result does not depend on, are linear in W and in
+  /// the moments d_i = m_i - r and P_i + d_i d_i' of the modes before; its covariance is S_j - M_j M_j'.
+  void back_over_mixing(const FilterStep<N, NY>& step, const FilterState<N>& before) {
+    const Index K = model_.mode_count(), n = model_.structure.dimension();
+    const StateVector r = combined_mean(before);  // near the means, so that their differences keep their digits
+    for (Index j = 0; j < K; ++j) {
+      const Gaussian<N>& from = before.modes[static_cast<std::size_t>(j)];
+      const Gaussian<N>& to = by_.modes[static_cast<std::size_t>(j)];
+      const StateVector d = from.mean - r;
+      moments_.row(j) << d.transpose(), (from.covariance + d * d.transpose()).reshaped().transpose();
+      by_moments_.col(j) << to.mean - 2.0 * to.covariance * (step.mixed[static_cast<std::size_t>(j)].mean - r),
+          to.covariance.reshaped();
+    }
+    by_weight_.noalias() = moments_.lazyProduct(by_moments_);
+    by_moments_before_.noalias() = by_moments_.lazyProduct(step.mixing.matrix.transpose());
+    by_before_.probability.setZero();
+    for (Index i = 0; i < K; ++i) {
+      Gaussian<N>& by = by_before_.modes[static_cast<std::size_t>(i)];
+      by.covariance = by_moments_before_.col(i).tail(n * n).reshaped(n, n);
+      by.mean = by_moments_before_.col(i).head(n) + 2.0 * by.covariance * moments_.row(i).head(n).transpose();
+    }
+    const VectorXd& prior = step.predicted_probability;
     for (Index j = 0; j < K; ++j) {
       if (prior(j) < impossible_probability) continue;
-      const double mean_by_weight = by_weight_.col(j).dot(step_.mixing.matrix.col(j));
+      const double mean_by_weight = by_weight_.col(j).dot(step.mixing.matrix.col(j));
       const auto by_pair = ((by_weight_.col(j).array() - mean_by_weight) / prior(j) + by_prior_(j)).matrix();
       sum_.transition.col(j) += by_pair.cwiseProduct(before.mode_probability);
       by_before_.probability += by_pair.cwiseProduct(model_.transition.matrix().col(j));
@@ -203,6 +240,7 @@ class ReversePass {
 }  // namespace
 
 BankGradient& BankGradient::operator+=(const BankGradient& other) {
+  log_likelihood += other.log_likelihood;
   for (std::size_t j = 0; j < modes.size(); ++j) {
     modes[j].model.A += other.modes[j].model.A;
     modes[j].model.B += other.modes[j].model.B;

@@ -9,13 +9,14 @@
 
 namespace modebank {
 
-/// Derivatives of a log-likelihood with respect to all numbers of a bank on which it depends. Each number has its own
-/// derivative. For a symmetric matrix, each entry has its own.
+/// A log-likelihood, and its derivatives with respect to all numbers of a bank on which it depends. Each number has its
+/// own derivative. For a symmetric matrix, each entry has its own.
 struct BankGradient {
   struct Mode {
     LinearModel model;
     Eigen::MatrixXd Q;
   };
+  double log_likelihood = 0.0;
   std::vector<Mode> modes;
   Eigen::MatrixXd R;
   Eigen::MatrixXd transition;

@@ -1,13 +1,9 @@
 #include "filter/judge/run/evaluate.hpp"
 
 #include <cmath>
-#include <memory>
 
-#include "filter/step/bank_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/pit_draw.hpp"
-#include "filter/step/stepper.hpp"
-#include "ident/base/not_a_number.hpp"
 #include "ident/data/public_recording.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/judge/evaluate.hpp"
@@ -66,7 +62,7 @@ RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const Filter
   return evaluate_samples(bank, BankFilter(bank, options), run);
 }
 
-RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter) {
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, CombinedFilter& filter) {
   check_run(frame, run);
   return evaluate_samples(frame, filter, run);
 }
@@ -82,18 +78,6 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   double sum = 0.0;
   for (const double value : log_densities(bank, run, options)) sum += std::isnan(value) ? 0.0 : value;
   return sum;
-}
-
-Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  check_run(bank, run);
-  Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
-  const std::unique_ptr<Stepper> stepper = make_stepper(bank, options);
-  for_each_sample(bank, run, [&](const SampleFeed& feed, Index k, bool starts) {
-    if (starts) return stepper->start(feed.start());
-    stepper->advance(feed.inputs(), feed.steps());
-    result(k) = stepper->update(run.state.col(k));
-  });
-  return result;
 }
 
 }  // namespace modebank

@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <cstdint>
 
-#include "filter/step/any_filter.hpp"
 #include "filter/step/bank.hpp"
+#include "filter/step/combined_filter.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"
 
@@ -37,21 +37,15 @@ struct RunEvaluation {
 /// for an input that is not finite.
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
-/// Evaluates any filter whose estimates have the sizes of `frame`.
-RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, AnyFilter& filter);
+/// Evaluates a filter whose estimates have the sizes of `frame`.
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, CombinedFilter& filter);
 
 /// Draws the transforms of quantised measurements within their intervals (pit_draw.hpp). The draw depends on the seed,
 /// the run's name and the sample number.
 void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation);
 
-/// Sum of log predictive densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
-/// Rounded signals have the densities of the filter, whose R has the rounding, and not the masses that evaluate_run
-/// scores. Stores nothing, so maximum likelihood can call it thousands of times. The conditions are those of
-/// evaluate_run.
+/// Sum of log_densities over the scored samples of a run [nats]: the log-likelihood of theta, Q, R and T.
 double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options);
-
-/// The summands of log_likelihood for every sample of a run [nats], N; NaN where there is none.
-Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 
 /// The most probable sequence of modes of a run (Viterbi), N; -1 before the filter's start. Each mode predicts a sample
 /// from the filter's own estimate, in which the sequences up to this sample are mixed. This is exact while the state is

@@ -6,8 +6,7 @@
 #include "filter/judge/run/sample_paths.hpp"
 #include "filter/step/drifting_forecast.hpp"
 #include "filter/step/equations/bounds.hpp"
-#include "filter/step/equations/filter_memory.hpp"
-#include "filter/step/forecast.hpp"
+#include "filter/step/imm_filter.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -22,8 +21,8 @@ using Eigen::Index;
 template <int N, int NY>
 class MomentForecast final : public Forecast {
  public:
-  explicit MomentForecast(const FilterModel<N, NY>& model) : bank_(model), outputs_(model.C.rows()) {}
-  void start(const FilterState<N>& origin) { bank_.start(origin); }
+  explicit MomentForecast(const ImmFilter<N, NY>& bank) : bank_(bank), outputs_(bank.model().C.rows()) {}
+  void start(const ImmFilter<N, NY>& origin) { bank_.start(origin); }
   void step(const Vector& inputs) override { bank_.step(inputs); }
 
   Eigen::VectorXd mean() const override {
@@ -46,10 +45,10 @@ class MomentForecast final : public Forecast {
   double probability(Index i, double y) const override { return bank_.signal(i).probability(y); }
   double quantile(Index i, double p) const override { return bank_.signal(i).quantile(p, normal_quantile(p)); }
   double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override { return bank_.observe(y, error); }
-  Eigen::VectorXd mode_probability() const override { return bank_.predicted().predicted_probability; }
+  Eigen::VectorXd mode_probability() const override { return bank_.predicted_probability(); }
 
  private:
-  BankForecast<N, NY> bank_;
+  ImmFilter<N, NY> bank_;
   Index outputs_;
 };
 
@@ -57,48 +56,34 @@ template <int N, int NY>
 class MomentFilter final : public ForecastingFilter {
  public:
   MomentFilter(const Bank& bank, const Trajectory& run, const FilterOptions& options)
-      : ForecastingFilter(bank, run),
-        model_(bank, options),
-        step_(model_),
-        state_(initial_state(model_)),
-        forecast_(model_) {}
-  void step_to(Index t) override { modebank::step_to(model_, moments(), t, run_, state_, step_); }
+      : ForecastingFilter(bank, run), filter_(bank, options), forecast_(filter_) {}
+  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
 
  protected:
   Forecast& start_forecast() override {
-    forecast_.start(state_);
+    forecast_.start(filter_);
     return forecast_;
   }
 
  private:
-  FilterModel<N, NY> model_;
-  FilterStep<N, NY> step_;
-  FilterState<N> state_;
+  ImmFilter<N, NY> filter_;
   MomentForecast<N, NY> forecast_;
 };
 
 class PathFilter final : public ForecastingFilter {
  public:
   PathFilter(const Bank& bank, const Trajectory& run, const FilterOptions& options, Index paths, std::uint64_t seed)
-      : ForecastingFilter(bank, run),
-        model_(bank, options),
-        step_(model_),
-        state_(initial_state(model_)),
-        paths_(bank, paths, seed) {}
-  void step_to(Index t) override { modebank::step_to(model_, moments(), t, run_, state_, step_); }
+      : ForecastingFilter(bank, run), filter_(bank, options), paths_(bank, paths, seed) {}
+  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
 
  protected:
   Forecast& start_forecast() override {
-    save(state_, memory_);
-    paths_.start(memory_);
+    paths_.start(filter_.state());
     return paths_;
   }
 
  private:
-  FilterModel<Eigen::Dynamic, Eigen::Dynamic> model_;
-  FilterStep<Eigen::Dynamic, Eigen::Dynamic> step_;
-  FilterState<Eigen::Dynamic> state_;
-  FilterMemory memory_;
+  ImmFilter<Eigen::Dynamic, Eigen::Dynamic> filter_;
   SamplePaths paths_;
 };
 
@@ -120,7 +105,7 @@ class RunningNoiseForecast final : public Forecast {
   /// `merged`: whether all noise levels are one Gaussian.
   RunningNoiseForecast(const Bank& bank, bool merged)
       : merged_(merged), running_(bank.running_noise), noise_(running_.nu), forecast_(bank) {}
-  void start(const DriftingRecursion& origin) { forecast_.start(origin.z(), origin.save()); }
+  void start(const DriftingFilter& origin) { forecast_.start(origin); }
   void step(const Vector& inputs) override { forecast_.step(inputs); }
   void arrive(Index samples) override {
     factor_ = running_.factor_at(samples);
@@ -184,18 +169,18 @@ class RunningNoiseForecast final : public Forecast {
 class RunningNoiseFilter final : public ForecastingFilter {
  public:
   RunningNoiseFilter(const Bank& bank, const Trajectory& run, bool merged)
-      : ForecastingFilter(bank, run), recursion_(bank), forecast_(bank, merged) {}
-  void step_to(Index t) override { follow(moments(), t, run_, recursion_); }
+      : ForecastingFilter(bank, run), filter_(bank), forecast_(bank, merged) {}
+  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
   const RunningNoiseForecast& forecast() const { return forecast_; }
 
  protected:
   Forecast& start_forecast() override {
-    forecast_.start(recursion_);
+    forecast_.start(filter_);
     return forecast_;
   }
 
  private:
-  DriftingRecursion recursion_;
+  DriftingFilter filter_;
   RunningNoiseForecast forecast_;
 };
 
@@ -243,18 +228,6 @@ std::vector<LevelErrors> level_errors(const Bank& bank, const Trajectory& run, c
     filter.forecast().whiten(run.state.col(k), out[h].whitened.col(k), out[h].log_weight.col(k));
   });
   return out;
-}
-
-double follow(const RunInstants& instants, Index t, const Trajectory& run, DriftingRecursion& recursion) {
-  const Instant& instant = instants.instants[static_cast<std::size_t>(t)];
-  if (instant.starts) {
-    recursion.start(instant.start);
-    return not_a_number;
-  }
-  recursion.predict(instants.inputs.col(t));
-  if (instant.sample >= 0) return recursion.update(run.state.col(instant.sample));
-  recursion.skip();
-  return not_a_number;
 }
 
 }  // namespace modebank

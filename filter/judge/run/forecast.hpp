@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/drifting_recursion.hpp"
+#include "filter/step/drifting_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
-#include "filter/step/student_noise.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"
 
@@ -117,9 +117,5 @@ struct LevelErrors {
 /// One element per horizon (samples ahead, ascending).
 std::vector<LevelErrors> level_errors(const Bank& bank, const Trajectory& run,
                                       const std::vector<Eigen::Index>& horizons);
-
-/// Advances the recursion from the previous moment to moment t of a run. Returns the log density of the sample; NaN
-/// without a prediction or a sample.
-double follow(const RunInstants& instants, Eigen::Index t, const Trajectory& run, DriftingRecursion& recursion);
 
 }  // namespace modebank

@@ -18,15 +18,15 @@ using Eigen::Index;
 /// One sample ahead by running noise, the prediction is the filter's own: its levels have different means.
 void take_from_filter(const Bank& bank, const Trajectory& run, HorizonEvaluation& out) {
   const RunInstants instants(bank, run);
-  DriftingRecursion recursion(bank);
+  DriftingFilter filter(bank);
   Eigen::VectorXd weight;
   for (Index t = 0; t < instants.count(); ++t) {
-    const double log_density = follow(instants, t, run, recursion);
+    const double log_density = follow(instants, t, run, filter);
     const Index k = instants.instants[static_cast<std::size_t>(t)].sample;
     if (k < 0 || std::isnan(out.log_density(0, k))) continue;
-    recursion.weigh_levels(0, weight);
-    for (Index i = 0; i < out.error[0].rows(); ++i) out.pit[0](i, k) = recursion.probability(i, 0.0, weight);
-    out.error[0].col(k) = recursion.innovation();
+    filter.weigh_levels(0, weight);
+    for (Index i = 0; i < out.error[0].rows(); ++i) out.pit[0](i, k) = filter.probability(i, 0.0, weight);
+    out.error[0].col(k) = filter.innovation();
     out.log_density(0, k) = log_density;
   }
 }

@@ -1,6 +1,8 @@
+#include <cmath>
+
 #include "filter/judge/run/evaluate.hpp"
-#include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/imm_filter.hpp"
 
 namespace modebank {
 namespace {
@@ -12,10 +14,9 @@ using Eigen::Index;
 template <int N, int NY>
 Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
                               const FilterOptions& options) {
-  const FilterModel<N, NY> model(bank, options);
+  ImmFilter<N, NY> filter(bank, options);
+  const FilterModel<N, NY>& model = filter.model();
   if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
-  FilterStep<N, NY> step(model);
-  FilterState<N> state = initial_state(model);
   const Index K = model.mode_count();
   Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
   Eigen::VectorXi best(instants.count());
@@ -23,14 +24,13 @@ Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const Run
   Eigen::VectorXd score(K), next(K);
   for (Index t = 0; t < instants.count(); ++t) {
     const bool starts = instants.instants[static_cast<std::size_t>(t)].starts;
-    if (!starts && !model.transition_logit.empty())
-      log_T = transition_of_step(model, state, instants.inputs.col(t), step).array().log();
-    const bool measured = step_to(model, instants, t, run, state, step);
+    if (!starts && !model.transition_logit.empty()) log_T = filter.transition(instants.inputs.col(t)).array().log();
+    const bool measured = !std::isnan(follow(instants, t, run, filter));
     for (Index j = 0; j < K && !starts; ++j) {
       Index before = j;
       next(j) = (score + log_T.col(j)).maxCoeff(&before);
       from(j, t) = static_cast<int>(before);
-      if (measured) next(j) += step.log_likelihood(j);
+      if (measured) next(j) += filter.log_likelihood()(j);
     }
     if (starts) next = model.initial_probability.array().max(mode_probability_floor).log();
     score = next.array() - next.maxCoeff();

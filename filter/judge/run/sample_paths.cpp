@@ -57,11 +57,10 @@ Index SamplePaths::draw_next_mode(Index mode, const Vector& state, const Vector&
   return draw_mode(probability_);
 }
 
-void SamplePaths::start(const FilterMemory& origin) {
+void SamplePaths::start(const FilterState<Eigen::Dynamic>& origin) {
   const Index n = next_.size();
   std::vector<Eigen::MatrixXd> start_root;
-  for (Index j = 0; j < bank_.mode_count(); ++j)
-    start_root.push_back(covariance_root(origin.covariances.col(j).reshaped(n, n)));
+  for (const Gaussian<Eigen::Dynamic>& mode : origin.modes) start_root.push_back(covariance_root(mode.covariance));
   states_.resize(n, paths_);
   predicted_.resize(n, paths_);
   modes_.resize(static_cast<std::size_t>(paths_));
@@ -69,7 +68,7 @@ void SamplePaths::start(const FilterMemory& origin) {
   for (Index i = 0; i < paths_; ++i) {
     const Index mode = draw_mode(origin.mode_probability);
     modes_[static_cast<std::size_t>(i)] = mode;
-    states_.col(i) = origin.means.col(mode);
+    states_.col(i) = origin.modes[static_cast<std::size_t>(mode)].mean;
     add_draw(start_root[static_cast<std::size_t>(mode)], states_.col(i));
   }
   predicted_ = states_;

@@ -7,7 +7,7 @@
 
 #include "filter/judge/run/forecast.hpp"
 #include "filter/step/bank.hpp"
-#include "filter/step/bank_filter.hpp"
+#include "filter/step/equations/imm.hpp"
 
 namespace modebank {
 
@@ -19,7 +19,7 @@ class SamplePaths final : public Forecast {
  public:
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed);
 
-  void start(const FilterMemory& origin);
+  void start(const FilterState<Eigen::Dynamic>& origin);
   /// Advances every path by one model step. Removes a path if its values exceed largest_mean.
   void step(const Vector& inputs) override;
   void arrive(Eigen::Index) override;

@@ -11,7 +11,7 @@
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/step/student_noise.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {

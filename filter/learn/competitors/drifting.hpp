@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/feed/run_samples.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/local_model.hpp"
 
@@ -39,14 +38,6 @@ struct DriftingScores {
   /// The grid point with the highest score; the first one if several are equal.
   Eigen::Index best() const;
 };
-
-/// A training run, prepared for DriftingRecursion.
-struct TrainingRun {
-  const Trajectory& trajectory;
-  RunInstants instants;
-};
-/// The conditions are those of check_run. `recording` must outlive the result.
-std::vector<TrainingRun> training_runs(const Bank& bank, const Recording& recording);
 
 /// Scores the grid for the competitor `drifting`, a bank of one mode that drifts, with running noise. `start`: a bank
 /// with theta, scale, Q and choice of drifting coefficients from the training runs; its other settings are ignored.

@@ -6,9 +6,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/run/forecast.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/competitors/drifting_lanes.hpp"
+#include "filter/step/drifting_filter.hpp"
+#include "filter/step/feed/run_samples.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
@@ -29,9 +30,9 @@ struct DriftTrace {
     for (std::size_t i = 0; i < ratio.size(); ++i) start[i].push_back(ratio[i].size());
   }
 
-  void add(const DriftingRecursion& recursion, const Eigen::VectorXd& v0) {
+  void add(const DriftingFilter& filter, const Eigen::VectorXd& v0) {
     for (Index i = 0; i < v0.size(); ++i) {
-      const double e = recursion.innovation()(i), growth = recursion.growth(i);
+      const double e = filter.innovation()(i), growth = filter.growth(i);
       if (std::isnan(e)) continue;
       ratio[static_cast<std::size_t>(i)].push_back(e * e / growth / v0(i));
       log_variance += std::log(v0(i)) + std::log(growth);
@@ -40,16 +41,32 @@ struct DriftTrace {
   }
 };
 
+/// A training run, prepared for DriftingFilter.
+struct TrainingRun {
+  const Trajectory& trajectory;
+  RunInstants instants;
+};
+
+std::vector<TrainingRun> training_runs(const Bank& bank, const Recording& recording) {
+  std::vector<TrainingRun> runs;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    check_run(bank, run);
+    runs.push_back({run, RunInstants(bank, run)});
+  }
+  return runs;
+}
+
 DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<TrainingRun>& runs) {
   bank.drift.rates = rates;
   const Eigen::VectorXd v0 = bank.noise_variance();
   DriftTrace trace(static_cast<std::size_t>(v0.size()));
-  DriftingRecursion recursion(bank);
+  DriftingFilter filter(bank);
   for (const TrainingRun& run : runs)
     for (Index t = 0; t < run.instants.count(); ++t) {
-      const double log_density = follow(run.instants, t, run.trajectory, recursion);
+      const double log_density = follow(run.instants, t, run.trajectory, filter);
       if (run.instants.instants[static_cast<std::size_t>(t)].starts) trace.begin();
-      if (!std::isnan(log_density)) trace.add(recursion, v0);
+      if (!std::isnan(log_density)) trace.add(filter, v0);
     }
   return trace;
 }
@@ -68,16 +85,6 @@ void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<E
 }
 
 }  // namespace
-
-std::vector<TrainingRun> training_runs(const Bank& bank, const Recording& recording) {
-  std::vector<TrainingRun> runs;
-  for (const Trajectory& run : recording.runs) {
-    if (run.role != Role::train) continue;
-    check_run(bank, run);
-    runs.push_back({run, RunInstants(bank, run)});
-  }
-  return runs;
-}
 
 std::array<Index, 6> DriftingGrid::point(Index index) const {
   const std::array<Index, 6> size = sizes();

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "filter/learn/competitors/drifting.hpp"
-#include "filter/step/student_noise.hpp"
+#include "filter/step/noise_density.hpp"
 
 namespace modebank {
 

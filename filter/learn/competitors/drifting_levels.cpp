@@ -1,5 +1,3 @@
-#include <tbb/parallel_for.h>
-
 #include <Eigen/Core>
 #include <array>
 #include <cmath>
@@ -8,8 +6,8 @@
 #include <optional>
 #include <vector>
 
-#include "filter/judge/run/forecast.hpp"
 #include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/refine/learning_part.hpp"
 
 namespace modebank {
@@ -26,34 +24,24 @@ std::array<std::vector<double>, 7> grids() {
   return {grid.q, {1e-2, 1e-1, 1.0, 10.0, 100.0}, grid.leak, grid.lam, grid.nu, grid.floor, {0.1, 0.3, 1.0}};
 }
 
-/// The training score, one sample ahead.
-GridTuning scored(const Bank& bank, const std::vector<TrainingRun>& runs) {
-  std::vector<double> sums(runs.size(), 0.0);
-  std::vector<Index> samples(runs.size(), 0);
-  tbb::parallel_for(std::size_t{0}, sums.size(), [&](std::size_t r) {
-    DriftingRecursion recursion(bank);
-    for (Index t = 0; t < runs[r].instants.count(); ++t) {
-      const double log_density = follow(runs[r].instants, t, runs[r].trajectory, recursion);
-      if (std::isnan(log_density)) continue;
-      sums[r] += log_density;
-      ++samples[r];
-    }
-  });
-  GridTuning total;
-  for (std::size_t r = 0; r < sums.size(); ++r) {
-    total.log_score += sums[r];
-    total.samples += samples[r];
-  }
-  total.log_score /= static_cast<double>(total.samples);
-  return total;
+/// The training score, one sample ahead. `samples`: those that a filter of this structure scores.
+GridTuning scored(const Bank& bank, const Recording& training, Index samples) {
+  return {training_log_likelihood(bank, training, {}) / static_cast<double>(samples), samples};
+}
+
+Index scored_samples(const Bank& bank, const Recording& training) {
+  Index samples = 0;
+  for (const Trajectory& run : training.runs)
+    if (run.role == Role::train) samples += (!log_densities(bank, run, {}).array().isNaN()).count();
+  return samples;
 }
 
 /// Climbs along one setting after another to the highest training score.
 class Climb {
  public:
   /// `frame`: a model with levels whose settings are ignored.
-  Climb(const Bank& frame, const std::vector<TrainingRun>& training)
-      : frame_(frame), training_(training), grids_(grids()) {}
+  Climb(const Bank& frame, const Recording& training, Index samples)
+      : frame_(frame), training_(training), samples_(samples), grids_(grids()) {}
 
   void from(Point at) {
     constexpr double least_climb = 1e-5;  // [nats/sample]
@@ -77,7 +65,8 @@ class Climb {
 
  private:
   const Bank& frame_;
-  const std::vector<TrainingRun>& training_;
+  const Recording& training_;
+  Index samples_;
   std::array<std::vector<double>, 7> grids_;
   std::map<Point, double> known_;
   std::optional<Point> best_;
@@ -97,7 +86,7 @@ class Climb {
   double score(const Point& point) {
     const auto [known, is_new] = known_.try_emplace(point, 0.0);
     if (!is_new) return known->second;
-    const double log_score = scored(at(point), training_).log_score;
+    const double log_score = scored(at(point), training_, samples_).log_score;
     return known->second = std::isnan(log_score) ? -std::numeric_limits<double>::infinity() : log_score;
   }
 };
@@ -130,13 +119,14 @@ Bank with_noise_levels(const Bank& drifting, const Bank& one_motion, const Recor
   const Index most = affordable_transitions(frame);
   if (most < fewest_transitions) return drifting;
   const std::optional<Recording> part = learning_part(recording, most, 1);
-  const std::vector<TrainingRun> training = training_runs(frame, part ? *part : recording);
-  Climb climb(frame, training);
+  const Recording& training = part ? *part : recording;
+  const Index samples = scored_samples(frame, training);
+  Climb climb(frame, training, samples);
   // q 1e-3, p0 10, no leak, Gaussian, the lowest floor, v0; a short and a long memory of the variance
   for (const std::size_t lam : {5, 7}) climb.from({3, 3, 0, lam, 0, 0, 2});
   Bank bank = climb.best();
-  bank.drift.tuning = scored(bank, training);
-  if (!(bank.drift.tuning.log_score > scored(drifting, training).log_score)) return drifting;
+  bank.drift.tuning = scored(bank, training, samples);
+  if (!(bank.drift.tuning.log_score > scored(drifting, training, samples).log_score)) return drifting;
   choose_horizon_factors(bank, recording, horizons);
   return bank;
 }

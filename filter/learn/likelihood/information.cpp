@@ -2,14 +2,20 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
+#include <optional>
+
+#include "filter/learn/refine/learning_part.hpp"
 
 namespace modebank {
 namespace {
 
+constexpr Index fewest_metric_samples = 1000, samples_per_coordinate = 5;
 constexpr double least_probability = 1e-100;  // smallest divisor whose square does not underflow
 
-/// One row per sample, one column per coordinate. A row is zero if the sample has no density.
+/// One row per sample, one column per coordinate. A row is zero if the sample has no density. By central differences,
+/// or from the scores `at_origin` on.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
                                  const FilterOptions& filter, const LookAhead& look) {
   Eigen::MatrixXd gradients(run.samples(), around.size());
@@ -65,6 +71,15 @@ SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::Vec
     result.information.noalias() += gradients.transpose() * gradients;
   }
   return result;
+}
+
+Eigen::MatrixXd search_metric(const BankCoordinates& around, const Eigen::VectorXd& steps, const Recording& recording,
+                              const FilterOptions& filter) {
+  const std::optional<Recording> part =
+      learning_part(recording, std::max(fewest_metric_samples, samples_per_coordinate * around.size()), 1);
+  const Recording& used = part ? *part : recording;
+  return sample_gradients(around, steps, used, filter).information *
+         static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(used.transitions(Role::train));
 }
 
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,

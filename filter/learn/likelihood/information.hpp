@@ -28,6 +28,10 @@ struct SampleGradients {
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
+/// The information of a likelihood, roughly, as the metric of a search: from a part of the samples.
+Eigen::MatrixXd search_metric(const BankCoordinates& around, const Eigen::VectorXd& steps, const Recording& recording,
+                              const FilterOptions& filter);
+
 /// Gradients by the switching regression. They require exactly measured states (R = 0). The densities equal those of
 /// the filter, but cost far less, especially with many lags.
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,

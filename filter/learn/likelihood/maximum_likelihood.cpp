@@ -22,6 +22,19 @@ constexpr double least_curvature = 1e-2;  // curvature added to every coordinate
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
 
+bool is_finite(const Bank& bank) {
+  return bank.R.allFinite() && bank.transition.matrix().allFinite() &&
+         std::all_of(bank.modes.begin(), bank.modes.end(), [](const Mode& mode) {
+           return mode.Q.allFinite() && mode.model.A.allFinite() && mode.model.B.allFinite() &&
+                  mode.model.c.allFinite();
+         });
+}
+
+struct Slope {
+  double value = -std::numeric_limits<double>::infinity();
+  Eigen::VectorXd gradient = {};
+};
+
 /// The target function near one bank.
 class Neighbourhood {
  public:
@@ -35,18 +48,19 @@ class Neighbourhood {
   Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
   double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
 
-  /// Gradient of the target, and the value if requested. Uses the adjoint of the filter's steps if it exists, else
-  /// differences.
-  Eigen::VectorXd gradient(const Eigen::VectorXd& at) const {
-    if (!is_exact()) return differences(at, [this](const Bank& bank) { return target_.value(bank); });
-    const BankGradient by_bank = training_gradient(decode(at), target_.recording, target_.filter);
-    Eigen::VectorXd result(size());
+  /// The target and its gradient. Uses the adjoint of the filter's steps if it exists, else differences.
+  Slope slope(const Eigen::VectorXd& at) const {
+    const Bank bank = decode(at);
+    if (!is_finite(bank)) return {};
+    if (!is_exact())
+      return {target_.value(bank), differences(at, [this](const Bank& other) { return target_.value(other); })};
+    const BankGradient by_bank = training_gradient(bank, target_.recording, target_.filter);
+    Slope result{by_bank.log_likelihood + target_.log_prior(bank), Eigen::VectorXd(size())};
     tbb::parallel_for(Index{0}, size(), [&](Index c) {
       const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(size(), c);
       const Bank up = decode(at + step), down = decode(at - step);
-      const double likelihood = by_bank.along(down, up);
-      const double prior = target_.prior ? target_.log_prior(up) - target_.log_prior(down) : 0.0;
-      result(c) = (likelihood + prior) / (2.0 * steps_(c));
+      const double rise = by_bank.along(down, up) + target_.log_prior(up) - target_.log_prior(down);
+      result.gradient(c) = rise / (2.0 * steps_(c));
     });
     return result;
   }
@@ -54,14 +68,15 @@ class Neighbourhood {
   /// Gradient and information of likelihood and prior at the origin. The search uses the same gradient. So this
   /// gradient vanishes where the search ends.
   SampleGradients gradients() const {
-    SampleGradients result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
     const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
-    if (is_exact())
-      result.sum = gradient(origin);
-    else if (target_.prior)
+    SampleGradients result;
+    if (is_exact()) {
+      result = {slope(origin).gradient, search_metric(coordinates_, steps_, target_.recording, target_.filter)};
+    } else {
+      result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
       result.sum += differences(origin, [this](const Bank& bank) { return target_.log_prior(bank); });
-    if (!target_.prior) return result;
-    result.information += prior_information(coordinates_, *target_.prior);
+    }
+    if (target_.prior) result.information += prior_information(coordinates_, *target_.prior);
     return result;
   }
 
@@ -96,11 +111,15 @@ class WhitenedTarget final : public ceres::FirstOrderFunction {
 
   bool Evaluate(const double* whitened, double* cost, double* gradient) const override {
     const Eigen::VectorXd at = by_ * Eigen::Map<const Eigen::VectorXd>(whitened, by_.rows());
-    *cost = origin_value_ - around_.value(at);
+    if (!gradient) {
+      *cost = origin_value_ - around_.value(at);
+      return std::isfinite(*cost);
+    }
+    const Slope slope = around_.slope(at);
+    *cost = origin_value_ - slope.value;
     if (!std::isfinite(*cost)) return false;
-    if (!gradient) return true;
     Eigen::Map<Eigen::VectorXd> result(gradient, by_.rows());
-    result = -(by_.transpose() * around_.gradient(at));
+    result = -(by_.transpose() * slope.gradient);
     return result.allFinite();
   }
 
@@ -153,24 +172,16 @@ BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_va
   return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1), 0.5 * slope * slope};
 }
 
-bool is_finite(const Bank& bank) {
-  return bank.R.allFinite() && bank.transition.matrix().allFinite() &&
-         std::all_of(bank.modes.begin(), bank.modes.end(), [](const Mode& mode) {
-           return mode.Q.allFinite() && mode.model.A.allFinite() && mode.model.B.allFinite() &&
-                  mode.model.c.allFinite();
-         });
-}
-
 }  // namespace
 
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
   const double likelihood = training_log_likelihood(bank, recording, filter, look);
-  return prior ? likelihood + log_prior(bank) : likelihood;
+  return likelihood + log_prior(bank);
 }
 
 double LikelihoodTarget::log_prior(const Bank& bank) const {
-  return modebank::log_prior(*prior, one_theta, switching_model(bank));
+  return prior ? modebank::log_prior(*prior, one_theta, switching_model(bank)) : 0.0;
 }
 
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,

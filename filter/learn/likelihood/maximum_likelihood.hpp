@@ -29,7 +29,7 @@ struct LikelihoodTarget {
 
   /// Value of the objective; minus infinity for a bank with non-finite numbers.
   double value(const Bank& bank) const;
-  /// The prior's part; requires a prior.
+  /// The prior's part; 0 without a prior.
   double log_prior(const Bank& bank) const;
 };
 

@@ -53,7 +53,7 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
     mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
                    step.mixing);
   }
-  mix(state, step.mixing, model.exact, step.mixed);
+  merge<N>(state.modes, step.mixing.matrix, step.mixed, model.exact);
   return step.mixed;
 }
 

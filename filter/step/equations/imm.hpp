@@ -34,9 +34,9 @@ struct FilterState {
 };
 
 /// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j. Unlike in a TransitionMatrix, the columns
-/// sum to one.
+/// sum to one. Rows are contiguous: merge computes several columns at a time.
 struct MixingWeights {
-  Eigen::MatrixXd matrix;  ///< K x K
+  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix;  ///< K x K
 };
 
 /// Intermediate results of one step, sized once.
@@ -59,7 +59,8 @@ struct FilterStep {
         difference(model.structure.dimension()),
         residual(model.C.rows()) {
     const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
-    kalman.assign(model.modes.size(), KalmanStep<N, NY>(n, model.C.rows(), model.structure.regressors()));
+    kalman.assign(model.modes.size(),
+                  KalmanStep<N, NY>(n, model.C.rows(), model.terms.empty() ? 0 : model.structure.regressors()));
     log_likelihood.resize(K);
     mixed.assign(model.modes.size(), Gaussian<N>(n));
     mixing.matrix.setZero(K, K);
@@ -98,14 +99,15 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
 /// its own state.
 inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
+  auto& W = weights.matrix;
+  c.setZero();
+  for (Eigen::Index i = 0; i < mu.size(); ++i)
+    for (Eigen::Index j = 0; j < mu.size(); ++j) c(j) += W(i, j) = T(i, j) * mu(i);
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < mu.size(); ++i) sum += weights.matrix(i, j) = T(i, j) * mu(i);
-    c(j) = sum;
-    if (sum < impossible_probability)
-      weights.matrix.col(j) = Eigen::VectorXd::Unit(mu.size(), j);
+    if (c(j) < impossible_probability)
+      W.col(j) = Eigen::VectorXd::Unit(mu.size(), j);
     else
-      weights.matrix.col(j) *= 1.0 / sum;
+      W.col(j) *= 1.0 / c(j);
   }
 }
 
@@ -123,43 +125,52 @@ bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
                      [&](const Gaussian<N>& part) { return part.mean(row) == parts.front().mean(row); });
 }
 
-/// Steps 2 and 5: mean and covariance of the mixture sum_i weights(i) N(parts[i]) (moment matching). With weights
-/// mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With weights mu it is the combined estimate (11.6.6-17,
-/// -18). Differences of means are relative to the final mean. The sum of the weights may differ from one, because the
-/// filter of [S25, eq. 12-13] uses other weights. The inner loops run over parts, so that sums stay in registers.
-/// `exact`: see FilterModel. With it, a row with the same mean in all parts keeps this mean without rounding. Rounding
-/// errors would look like differences between the parts.
-template <int N, class Weights>
-void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights, Gaussian<N>& merged,
-           bool exact = false) {
-  const Eigen::Index n = merged.mean.size(), count = static_cast<Eigen::Index>(parts.size());
+/// Mixtures j = first .. first + Count - 1 of `merge`.
+template <int Count, int N, class Weights>
+void merge_some(std::span<const Gaussian<N>> parts, const Weights& weights, Eigen::Index first, Gaussian<N>* merged,
+                bool exact) {
+  using Row = Eigen::Array<double, 1, Count>;
+  const Eigen::Index n = parts[0].mean.size(), count = weights.rows(), uncertain = uncertain_rows(parts);
   const Gaussian<N>* part = parts.data();
-  const Eigen::Index uncertain = merged.uncertain = uncertain_rows(parts);
-  if (uncertain < n) {
-    merged.mean = part[0].mean;
-    merged.covariance.setZero();
+  const auto weight = [&](Eigen::Index i) { return weights.template block<1, Count>(i, first).array(); };
+  for (int j = 0; j < Count; ++j) {
+    merged[j].uncertain = uncertain;
+    if (uncertain == n) continue;
+    merged[j].mean = part[0].mean;
+    merged[j].covariance.setZero();
   }
   for (Eigen::Index a = 0; a < uncertain; ++a) {
-    double sum = 0.0;
-    for (Eigen::Index i = 0; i < count; ++i) sum += weights(i) * part[i].mean(a);
-    merged.mean(a) = exact && has_one_mean(parts, a) ? part[0].mean(a) : sum;
+    Row sum = Row::Zero();
+    for (Eigen::Index i = 0; i < count; ++i) sum += weight(i) * part[i].mean(a);
+    const bool same = exact && has_one_mean(parts, a);
+    for (int j = 0; j < Count; ++j) merged[j].mean(a) = same ? part[0].mean(a) : sum(j);
   }
   for (Eigen::Index b = 0; b < uncertain; ++b)
     for (Eigen::Index a = b; a < uncertain; ++a) {
-      const double mean_a = merged.mean(a), mean_b = merged.mean(b);
-      double sum = 0.0;
+      Row mean_a, mean_b, sum = Row::Zero();
+      for (int j = 0; j < Count; ++j) {
+        mean_a(j) = merged[j].mean(a);
+        mean_b(j) = merged[j].mean(b);
+      }
       for (Eigen::Index i = 0; i < count; ++i)
-        sum += weights(i) * (part[i].covariance(a, b) + (part[i].mean(a) - mean_a) * (part[i].mean(b) - mean_b));
-      merged.covariance(a, b) = merged.covariance(b, a) = sum;
+        sum += weight(i) * (part[i].covariance(a, b) + (part[i].mean(a) - mean_a) * (part[i].mean(b) - mean_b));
+      for (int j = 0; j < Count; ++j) merged[j].covariance(a, b) = merged[j].covariance(b, a) = sum(j);
     }
 }
 
-/// Step 2: every mode j starts from x0_j = sum_i mu_{i|j} x_i (11.6.6-9), with the covariance of this mixture
-/// (11.6.6-10).
-template <int N>
-void mix(const FilterState<N>& state, const MixingWeights& weights, bool exact, std::vector<Gaussian<N>>& mixed) {
-  for (std::size_t j = 0; j < mixed.size(); ++j)
-    merge(state.modes, weights.matrix.col(static_cast<Eigen::Index>(j)), mixed[j], exact);
+/// Steps 2 and 5: mean and covariance of the mixtures sum_i weights(i, j) N(parts[i]) (moment matching), j = 0, 1, ..
+/// With weights mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With weights mu it is the combined estimate
+/// (11.6.6-17, -18). Differences of means are relative to the final mean. The sum of the weights may differ from one,
+/// because the filter of [S25, eq. 12-13] uses other weights. `exact`: see FilterModel. With it, a row with the same
+/// mean in all parts keeps this mean without rounding. Rounding errors would look like differences between the parts.
+template <int N, class Weights>
+void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights,
+           std::span<Gaussian<N>> merged, bool exact = false) {
+  constexpr int at_once = 4;
+  Eigen::Index j = 0;
+  for (; j + at_once <= weights.cols(); j += at_once)
+    merge_some<at_once, N>(parts, weights, j, merged.data() + j, exact);
+  for (; j < weights.cols(); ++j) merge_some<1, N>(parts, weights, j, merged.data() + j, exact);
 }
 
 /// Step 3, before the measurement: computes every mode's own prediction, and S_j.

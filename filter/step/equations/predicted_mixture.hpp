@@ -6,14 +6,11 @@
 #include <limits>
 
 #include "filter/step/equations/filter_step.hpp"
-#include "filter/step/interval_mass.hpp"
+#include "filter/step/noise_density.hpp"
 
 /// Combination of the modes' predictions: moments of the predicted mixture and the probability transform of a
 /// measurement.
 namespace modebank {
-
-/// Upper limit of normalised squares.
-inline constexpr double largest_nis = 1e300;
 
 /// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
 template <int N, int NY, class State, class Covariance>
@@ -30,41 +27,6 @@ void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x
     small::add_about_mean(S, weight, step.kalman[j].innovation_covariance, step.residual);
   }
 }
-
-/// The innovation of a predicted mixture, and its normalised square. Memory is allocated once.
-struct CombinedInnovation {
-  Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN for missing signals
-  double nis = 0.0;            ///< e' S^-1 e of the available signals; NaN if there are none
-
-  explicit CombinedInnovation(Eigen::Index n_y)
-      : innovation(n_y), covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
-
-  void observe(const Eigen::MatrixXd& C, const Eigen::VectorXd& x, const Eigen::MatrixXd& S,
-               const Eigen::Ref<const Eigen::VectorXd>& y) {
-    small::multiply(innovation, C, x);
-    innovation = y - innovation;
-    covariance_ = S;
-    residual_ = innovation;
-    Eigen::Index missing = 0;
-    for (Eigen::Index i = 0; i < y.size(); ++i)
-      if (is_missing(y(i))) {
-        detach(covariance_, i);
-        residual_(i) = 0.0;
-        innovation(i) = std::numeric_limits<double>::quiet_NaN();
-        ++missing;
-      }
-    cholesky_.factorise(covariance_);
-    cholesky_.decorrelate(residual_);
-    nis = cholesky_.squared_distance(residual_);
-    if (!(nis < largest_nis)) nis = largest_nis;
-    if (missing == y.size()) nis = std::numeric_limits<double>::quiet_NaN();
-  }
-
- private:
-  Eigen::MatrixXd covariance_;
-  Eigen::VectorXd residual_;
-  small::Ldl<Eigen::Dynamic> cholesky_;
-};
 
 /// A mixture of normal distributions of one signal.
 struct NormalMixture {
@@ -97,30 +59,6 @@ struct NormalMixture {
                                                      ///< band
 };
 
-/// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
-/// function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is
-/// missing. `weights`: workspace, K. Overwrites step.log_likelihood.
-template <int N, int NY, class Y, class Pit>
-void probability_transform(const Y& y, FilterStep<N, NY>& step, Eigen::VectorXd& weights, Pit&& pit) {
-  weights = step.predicted_probability;
-  for (Eigen::Index i = 0; i < pit.size(); ++i) {
-    if (is_missing(y(i))) {
-      pit(i) = std::numeric_limits<double>::quiet_NaN();
-      continue;
-    }
-    const bool more = i + 1 < pit.size();
-    double sum = 0.0;
-    for (Eigen::Index j = 0; j < weights.size(); ++j) {
-      const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
-      const double z = kalman.decorrelated(i), v = kalman.cholesky.D(i);
-      sum += weights(j) * normal_cdf(z / std::sqrt(v));
-      if (more) step.log_likelihood(j) = -0.5 * (std::log(v) + z * z / v);
-    }
-    pit(i) = sum < 1.0 ? sum : 1.0;  // limits rounding errors of the sum of weights
-    if (more) bayes(weights, step.log_likelihood, weights);
-  }
-}
-
 /// One signal's innovation in one mode, given the previous signals, and its variance.
 struct ModeSignal {
   double e = 0.0, s = 0.0;
@@ -139,51 +77,39 @@ struct ModeSignal {
   }
 };
 
-/// Transform of rounded measurements. The predictive distribution function of y_i is computed at both ends of y_i's
-/// interval, given the intervals of y_1 .. y_(i-1). Component i lies between the two values. `pit`: mean of the two
-/// values. `width`: their difference, 0 for a continuous or missing signal. `signal`(i, j): ModeSignal of mode j.
-/// `weights`: the modes' probabilities before the measurement. Overwrites `weights` and `log_likelihood`. Returns the
-/// log density of all signals, with the masses of intervals.
-template <class Y, class Signal, class Pit, class Width>
-double interval_transform(const Eigen::VectorXd& quantum, const Y& y, Signal signal, Eigen::VectorXd& weights,
-                          Eigen::VectorXd& log_likelihood, Pit&& pit, Width&& width) {
+/// Probability integral transform of the last measurement (Rosenblatt 1952). Component i is the predictive distribution
+/// function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights. NaN if y_i is
+/// missing. For a rounded signal it lies between the values at both ends of y_i's interval: `pit` is their mean and
+/// `width` their difference, else 0. `weights`: workspace, K. Overwrites step.log_likelihood. Returns the log density
+/// of all signals with the masses of intervals, if any signal is rounded.
+template <int N, int NY, class Y>
+double probability_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step,
+                             Eigen::VectorXd& weights, Eigen::VectorXd& pit, Eigen::VectorXd& width) {
+  const bool rounded = model.quantum.size() > 0;
   double log_density = 0.0;
+  weights = step.predicted_probability;
   width.setZero();
   for (Eigen::Index i = 0; i < pit.size(); ++i) {
-    if (is_missing(y(i))) {
-      pit(i) = std::numeric_limits<double>::quiet_NaN();
-      continue;
-    }
-    const double half = 0.5 * quantum(i);
+    pit(i) = std::numeric_limits<double>::quiet_NaN();
+    if (is_missing(y(i))) continue;
+    const bool scores = rounded || i + 1 < pit.size();
+    const double quantum = rounded ? model.quantum(i) : 0.0, half = 0.5 * quantum;
     double low = 0.0, high = 0.0;
     for (Eigen::Index j = 0; j < weights.size(); ++j) {
-      const ModeSignal of_mode = signal(i, j);
-      const double e = of_mode.e, deviation = of_mode.unrounded_deviation(quantum(i));
-      low += weights(j) * normal_cdf((e - half) / deviation);
-      high += weights(j) * normal_cdf((e + half) / deviation);
-      log_likelihood(j) = of_mode.log_density(quantum(i));
+      const KalmanStep<N, NY>& mode = step.kalman[static_cast<std::size_t>(j)];
+      const ModeSignal signal{mode.decorrelated(i), mode.cholesky.D(i)};
+      const double deviation = signal.unrounded_deviation(quantum);
+      high += weights(j) * normal_cdf((signal.e + half) / deviation);
+      if (quantum > 0.0) low += weights(j) * normal_cdf((signal.e - half) / deviation);
+      if (scores) step.log_likelihood(j) = signal.log_density(quantum);
     }
-    high = std::min(high, 1.0);
-    low = std::min(low, high);
+    high = high < 1.0 ? high : 1.0;  // limits rounding errors of the sum of weights
+    low = quantum > 0.0 ? std::min(low, high) : high;
     pit(i) = 0.5 * (low + high);
     width(i) = high - low;
-    log_density += bayes(weights, log_likelihood, weights);
+    if (scores) log_density += bayes(weights, step.log_likelihood, weights);
   }
   return log_density;
-}
-
-/// For a FilterStep by the equations. Call after the update with y.
-template <int N, int NY, class Y, class Pit, class Width>
-double interval_transform(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step,
-                          Eigen::VectorXd& weights, Pit&& pit, Width&& width) {
-  weights = step.predicted_probability;
-  return interval_transform(
-      model.quantum, y,
-      [&](Eigen::Index i, Eigen::Index j) {
-        const KalmanStep<N, NY>& kalman = step.kalman[static_cast<std::size_t>(j)];
-        return ModeSignal{kalman.decorrelated(i), kalman.cholesky.D(i)};
-      },
-      weights, step.log_likelihood, pit, width);
 }
 
 }  // namespace modebank

@@ -3,12 +3,12 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/step/equations/filter_step.hpp"
 #include "filter/step/feed/sample_feed.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 
-/// A recorded run as filters need it: sample by sample, or moment by moment for random access.
+/// A recorded run as filters need it: sample by sample, or moment by moment for random access. Filters and forecasts
+/// are ImmFilter, DriftingFilter, DriftingForecast and those of the judge.
 namespace modebank {
 
 /// Throws std::invalid_argument if sizes of the bank do not fit each other, or do not fit the run. Throws DataError for
@@ -68,23 +68,20 @@ struct RunInstants {
   }
 };
 
-/// Advances `state` from the previous moment to moment t of a run. Returns false if no signal was measured at t.
-template <int N, int NY>
-bool step_to(const FilterModel<N, NY>& model, const RunInstants& run, Eigen::Index t, const Trajectory& trajectory,
-             FilterState<N>& state, FilterStep<N, NY>& step) {
+/// Advances a filter from the previous moment to moment t of a run. Returns the log density of the sample; NaN without
+/// a prediction or a measured signal.
+template <class Filter>
+double follow(const RunInstants& run, Eigen::Index t, const Trajectory& trajectory, Filter& filter) {
   const Instant& instant = run.instants[static_cast<std::size_t>(t)];
-  if (instant.starts) {
-    start(model, instant.start, state);
-    return true;
+  if (instant.sample >= 0 && !instant.starts) {
+    filter.predict(run.inputs.col(t));
+    return filter.update(trajectory.state.col(instant.sample));
   }
-  predict(model, state, run.inputs.col(t), step);
-  if (instant.sample < 0) {
-    skip_measurement(step, state);
-    return false;
-  }
-  const auto y = trajectory.state.col(instant.sample);
-  update(model, y, step, state);
-  return step.partial.missing < y.size();
+  if (instant.starts)
+    filter.start(instant.start);
+  else
+    filter.step(run.inputs.col(t));
+  return not_a_number;
 }
 
 }  // namespace modebank

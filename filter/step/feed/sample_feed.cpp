@@ -35,19 +35,9 @@ void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& in
   push(time_s, input.data(), measurement.data());
 }
 
-void SampleFeed::restore(const Memory& memory) {
-  if (memory.inputs.rows() != recent_.rows() || memory.inputs.cols() != recent_.cols() ||
-      memory.measurements.rows() != measurements_.rows() || memory.measurements.cols() != measurements_.cols())
-    throw std::invalid_argument("the stored samples do not fit this bank");
-  constexpr Index most_samples = Index(1) << 53;  // a million years of steps at 285 Hz
-  if (!memory.inputs.allFinite() || memory.samples < 0 || memory.samples > most_samples || memory.whole < 0 ||
-      memory.whole > memory.samples)
-    throw std::invalid_argument("the stored samples have invalid counts");
-  recent_ = memory.inputs;
-  measurements_ = memory.measurements;
-  samples_ = memory.samples;
-  whole_ = memory.whole;
-  time_s_ = memory.time_s;
+void SampleFeed::settle() const {
+  if (!recent_.allFinite() || samples_ < 0 || whole_ < 0 || whole_ > samples_)
+    throw std::invalid_argument("the snapshot has samples with invalid counts or inputs");
 }
 
 }  // namespace modebank

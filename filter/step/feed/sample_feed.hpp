@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <tuple>
 #include <vector>
 
 #include "filter/step/bank.hpp"
@@ -32,6 +33,7 @@ class SampleFeed {
     const bool near = !(dt_s > 0.0 && to_s - from_s >= 1.25 * dt_s);  // the usual case is decided without a division
     return near ? 1 : whole_steps((to_s - from_s) / dt_s);
   }
+  Eigen::Index channels() const { return inputs_; }  ///< m
   /// Forgets all samples.
   void clear() { samples_ = whole_ = 0; }
 
@@ -47,16 +49,11 @@ class SampleFeed {
     return {recent_.data() + inputs_ * latest_delay_, acting_inputs_};
   }
 
-  /// The state between two samples, for a snapshot.
-  struct Memory {
-    Eigen::MatrixXd inputs;        ///< m x depth, the newest column first
-    Eigen::MatrixXd measurements;  ///< n_y x state lags, the newest column first
-    Eigen::Index samples = 0, whole = 0;
-    double time_s = 0.0;
-  };
-  Memory memory() const { return {recent_, measurements_, samples_, whole_, time_s_}; }
-  /// Throws std::invalid_argument if sizes disagree.
-  void restore(const Memory& memory);
+  /// The parts of a snapshot. After they have been read, `settle` checks them.
+  auto parts() { return std::tie(recent_, measurements_, samples_, whole_, time_s_); }
+  auto parts() const { return std::tie(recent_, measurements_, samples_, whole_, time_s_); }
+  /// Throws std::invalid_argument if they cannot be those of a feed.
+  void settle() const;
 
  private:
   Eigen::Index inputs_, latest_delay_, acting_inputs_, first_transition_;

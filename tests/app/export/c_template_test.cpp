@@ -89,7 +89,7 @@ TEST(CTemplate, StepsAsBankFilterDoes) {
     expect_near(&estimate.log_density, Eigen::MatrixXd::Constant(1, 1, expected.log_density));
     double mean = 0.0, covariance = 0.0;
     modebank_predict(&c_filter, &ahead, 1, run.input.col(k).data(), &mean, &covariance);
-    const FilterSnapshot snapshot = filter.snapshot();
+    const std::vector<double> snapshot = filter.snapshot();
     const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(1, std::nan(""));
     const FilterEstimate& next = filter.step(std::nan(""), run.input.col(k), nothing);
     expect_near(&mean, exported.bank.C * next.prediction);

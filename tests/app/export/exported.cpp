@@ -124,7 +124,7 @@ std::string input_of(const Trajectory& run) {
 /// Difference of the forecasts for the next samples, without measurements.
 double distance_ahead(BankFilter& filter, const Bank& bank, const Trajectory& run, Index k, Numbers& numbers) {
   const Index n_y = bank.C.rows();
-  const FilterSnapshot snapshot = filter.snapshot();
+  const std::vector<double> snapshot = filter.snapshot();
   const Eigen::MatrixXd means = numbers.next(look_ahead, n_y), S = numbers.next(look_ahead, n_y * n_y);
   const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(n_y, std::nan(""));
   double largest = 0.0;

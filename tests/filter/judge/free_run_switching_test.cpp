@@ -168,7 +168,8 @@ TEST(SamplePaths, ModesMayFollowStateAndInput) {
   constexpr double steep = 1e6;
   bank.transition_logit = {steep * Eigen::Matrix2d{{0.0, 0.0}, {1.0, 1.0}}, Eigen::Vector2d(0.5, 0.0)};
   SamplePaths paths(bank, 5, 1);
-  FilterMemory origin{Eigen::MatrixXd::Constant(1, 2, 0.4), Eigen::MatrixXd::Zero(1, 2), bank.initial_probability};
+  FilterState<Eigen::Dynamic> origin{{2, Gaussian<Eigen::Dynamic>(1)}, bank.initial_probability};
+  for (Gaussian<Eigen::Dynamic>& mode : origin.modes) mode.mean(0) = 0.4;
   paths.start(origin);
   double x = 0.4;
   std::array<int, 2> visits{};

@@ -8,7 +8,8 @@
 #include <stdexcept>
 
 #include "filter/judge/run/horizon.hpp"
-#include "filter/step/student_noise.hpp"
+#include "filter/learn/competitors/drifting.hpp"
+#include "filter/step/noise_density.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

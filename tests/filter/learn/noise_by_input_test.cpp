@@ -134,10 +134,8 @@ TEST(NoiseFactor, OfSamplePathsIsThatOfEachPathsOwnState) {
   const Recording recording = runs_of(follows_input, 6, 1, 60);
   Bank bank = bank_of(recording, test::structure_of(recording), 0.0, 1);
   bank.noise_factor = {MatrixXd{{0.0, 1.0}}, VectorXd::Ones(1), 0.3};
-  FilterMemory origin;
-  origin.means = MatrixXd::Constant(1, 1, 0.2);
-  origin.covariances = MatrixXd::Zero(1, 1);
-  origin.mode_probability = VectorXd::Ones(1);
+  FilterState<Eigen::Dynamic> origin{{Gaussian<Eigen::Dynamic>(1)}, VectorXd::Ones(1)};
+  origin.modes[0].mean(0) = 0.2;
   SamplePaths paths(bank, 40'000, 1);
   paths.start(origin);
   paths.step(VectorXd::Constant(1, 1.4));

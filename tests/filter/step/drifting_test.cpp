@@ -8,7 +8,8 @@
 #include "filter/judge/run/horizon.hpp"
 #include "filter/judge/score/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/student_noise.hpp"
+#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -56,21 +57,21 @@ TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
               drift_digits);
   Eigen::VectorXd theta = model.drift.scale.asDiagonal() * model.theta(0);
   Eigen::MatrixXd P = 0.1 * Eigen::MatrixXd::Identity(4, 4);
-  DriftingRecursion recursion(model);
-  recursion.start(run.state.col(0));
+  DriftingFilter filter(model);
+  filter.start(run.state.col(0));
   for (Index k = 0; k + 1 < run.samples(); ++k) {
     if (k > 0) P += 0.01 * d * d.transpose();
     Eigen::VectorXd h(4);
     h << run.state(0, k), run.input.col(k), 1.0;
     h.array() /= model.drift.scale.array();
     const double predicted = run.state(0, k) + theta.dot(h), growth = 1.0 + h.dot(P * h);
-    recursion.predict(run.input.col(k));
-    EXPECT_NEAR(recursion.prediction()(0), predicted, drift_digits);
-    EXPECT_NEAR(recursion.growth(0), growth, drift_digits);
+    filter.predict(run.input.col(k));
+    EXPECT_NEAR(filter.growth(0), growth, drift_digits);
     const Eigen::VectorXd gain = P * h / growth;
     theta += gain * (run.state(0, k + 1) - predicted);
     P -= (gain * h.transpose() * P).eval();
-    recursion.update(run.state.col(k + 1));
+    filter.update(run.state.col(k + 1));
+    EXPECT_NEAR(filter.innovation()(0), run.state(0, k + 1) - predicted, drift_digits);
   }
   model.structure.intercept = false;
   model.drift.wandering = Wandering::constant;
@@ -104,8 +105,9 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
     Bank model = example_drifting(2, 1, 2);
     const Trajectory run = simulate_drifting(model, 40 + static_cast<Index>(seed), seed);
     model.drift.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
-    BankFilter filter(model, {});
-    for (Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    DriftingFilter filter(model);
+    const RunInstants instants(model, run);
+    for (Index t = 0; t < instants.count(); ++t) follow(instants, t, run, filter);
     const Index r = model.structure.regressors(), first = model.structure.first_transition();
     Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.drift.rates.p0;
     Eigen::MatrixXd b = scaled_coefficients(model.structure, model.theta(0), model.drift.scale) / model.drift.rates.p0;
@@ -116,9 +118,8 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
       G += h * h.transpose();
       b += h * (run.state.col(k + 1) - run.state.col(k)).transpose();
     }
-    const DriftState memory = filter.snapshot().drift;
-    EXPECT_TRUE(near(memory.theta.reshaped(r, 2), G.ldlt().solve(b), 1e-7)) << seed;
-    const Eigen::MatrixXd P = memory.P[0].selfadjointView<Eigen::Lower>();
+    EXPECT_TRUE(near(filter.theta(), G.ldlt().solve(b), 1e-7)) << seed;
+    const Eigen::MatrixXd P = filter.P(0, 0).selfadjointView<Eigen::Lower>();
     EXPECT_TRUE(near(P, G.inverse(), 1e-7)) << seed;
   }
 }

@@ -2,12 +2,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <memory>
 
-#include "filter/step/bank_filter.hpp"
-#include "filter/step/equations/filter_step.hpp"
-#include "filter/step/equations/predicted_mixture.hpp"
-#include "filter/step/stepper.hpp"
+#include "filter/step/imm_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -60,42 +56,36 @@ TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
 }
 
 /// Steps both filters through the run and compares all results, relative to the size of each number.
+template <int N, int NY>
 void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
-  const FilterModel<any, any> model(bank, options);
-  FilterStep<any, any> step(model);
   const Index n = bank.structure.dimension(), n_y = bank.C.rows();
-  FilterState<any> state = start(model, run.state.col(0));
-  Gaussian<any> estimate(n);
-  const std::unique_ptr<Stepper> fixed = make_stepper(bank, options);
-  fixed->start(run.state.col(0));
-  VectorXd mean(n), expected_mean(n), pit(n_y), width = VectorXd::Zero(n_y), expected_pit(n_y), expected_width = width,
-                                                weights(bank.mode_count());
-  MatrixXd covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
+  ImmFilter<any, any> general(bank, options);
+  ImmFilter<N, NY> fixed(bank, options);
+  general.start(run.state.col(0));
+  fixed.start(run.state.col(0));
+  VectorXd mean(n), expected_mean(n), pit(n_y), width = VectorXd::Zero(n_y), expected_pit(n_y), expected_width = width;
+  MatrixXd covariance(n, n), expected_covariance(n, n), S(n_y, n_y), expected_S(n_y, n_y);
   const auto same = [&](const MatrixXd& a, const MatrixXd& b) {
     return test::near(a, b, relative * std::max(1e-3, b.cwiseAbs().maxCoeff()));
   };
   for (Index k = 1; k < run.samples(); ++k) {
-    predict(model, state, run.input.col(k - 1), step);
-    fixed->predict(run.input.col(k - 1));
-    combine(model, step, expected_mean, expected_S);
-    fixed->combine(mean, S);
+    general.predict(run.input.col(k - 1));
+    fixed.predict(run.input.col(k - 1));
+    general.combine(expected_mean, expected_S);
+    fixed.combine(mean, S);
     ASSERT_TRUE(same(mean, expected_mean)) << "sample " << k;
     ASSERT_TRUE(same(S, expected_S)) << "sample " << k;
-    ASSERT_TRUE(same(fixed->predicted_probability(), step.predicted_probability)) << "sample " << k;
-    double expected = update(model, run.state.col(k), step, state);
-    double log_density = fixed->update(run.state.col(k));
-    merge(state.modes, state.mode_probability, estimate);
-    fixed->merge(mean, covariance);
-    ASSERT_TRUE(same(mean, estimate.mean)) << "sample " << k;
-    ASSERT_TRUE(same(covariance, estimate.covariance)) << "sample " << k;
-    ASSERT_TRUE(same(fixed->mode_probability(), state.mode_probability)) << "sample " << k;
+    ASSERT_TRUE(same(fixed.predicted_probability(), general.predicted_probability())) << "sample " << k;
+    double expected = general.update(run.state.col(k)), log_density = fixed.update(run.state.col(k));
+    general.merge(expected_mean, expected_covariance);
+    fixed.merge(mean, covariance);
+    ASSERT_TRUE(same(mean, expected_mean)) << "sample " << k;
+    ASSERT_TRUE(same(covariance, expected_covariance)) << "sample " << k;
+    ASSERT_TRUE(same(fixed.mode_probability(), general.mode_probability())) << "sample " << k;
     ASSERT_EQ(std::isnan(log_density), std::isnan(expected));
     if (!std::isnan(expected)) {
-      fixed->transform(run.state.col(k), pit, width, log_density);
-      if (model.quantum.size() > 0)
-        expected = interval_transform(model, run.state.col(k), step, weights, expected_pit, expected_width);
-      else
-        probability_transform(run.state.col(k), step, weights, expected_pit);
+      fixed.transform(run.state.col(k), pit, width, log_density);
+      general.transform(run.state.col(k), expected_pit, expected_width, expected);
       ASSERT_TRUE(same(width, expected_width)) << "sample " << k;
       for (Index i = 0; i < n_y; ++i) {
         ASSERT_EQ(std::isnan(pit(i)), std::isnan(expected_pit(i)));
@@ -107,6 +97,11 @@ void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptio
       ASSERT_NEAR(log_density, expected, relative * std::max(1.0, std::abs(expected))) << "sample " << k;
     }
   }
+}
+
+void expect_agreement(const Bank& bank, const Trajectory& run, const FilterOptions& options, double relative) {
+  with_sizes(bank.structure.dimension(), bank.C.rows(),
+             [&]<int N, int NY>() { expect_agreement<N, NY>(bank, run, options, relative); });
 }
 
 /// The example's modes, slowed down so that many of them are stable. Their noises have the same order of magnitude.
@@ -194,12 +189,12 @@ TEST(FixedSizes, NeverSaysNaN) {
     run.state(0, 50) = 1e4;
     run.state(0, 60) = -1e29;
     run.state.middleCols(100, 200).setConstant(std::nan(""));
-    const std::unique_ptr<Stepper> fixed = make_stepper(bank, {});
-    fixed->start(run.state.col(0));
+    ImmFilter<1, 1> fixed(bank, {});
+    fixed.start(run.state.col(0));
     for (Index k = 1; k < run.samples(); ++k) {
-      fixed->predict(run.input.col(k - 1));
-      ASSERT_EQ(std::isfinite(fixed->update(run.state.col(k))), std::isfinite(run.state(0, k))) << "sample " << k;
-      ASSERT_TRUE(fixed->mode_probability().allFinite()) << "sample " << k;
+      fixed.predict(run.input.col(k - 1));
+      ASSERT_EQ(std::isfinite(fixed.update(run.state.col(k))), std::isfinite(run.state(0, k))) << "sample " << k;
+      ASSERT_TRUE(fixed.mode_probability().allFinite()) << "sample " << k;
     }
   }
   expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
@@ -225,12 +220,12 @@ TEST(FixedSizes, TransformsByTheNormalDistributionFunction) {
       {4.1, 0.99997934249308745323},       {7.7, 0.99999999999999319669},       {40.0, 1.0}};
   VectorXd pit(1), width(1);
   for (const auto& [z, probability] : cases) {
-    const std::unique_ptr<Stepper> fixed = make_stepper(bank, {});
-    fixed->start(VectorXd::Zero(1));
-    fixed->predict(VectorXd::Zero(1));
+    ImmFilter<1, 1> fixed(bank, {});
+    fixed.start(VectorXd::Zero(1));
+    fixed.predict(VectorXd::Zero(1));
     const VectorXd y = VectorXd::Constant(1, z);
-    double log_density = fixed->update(y);
-    fixed->transform(y, pit, width, log_density);
+    double log_density = fixed.update(y);
+    fixed.transform(y, pit, width, log_density);
     // z itself is rounded. This changes the tail in proportion to z^2.
     EXPECT_NEAR(pit(0), probability, (1e-14 + 2.3e-16 * z * z) * probability) << z;
   }

@@ -1,6 +1,4 @@
 // Predictions without measurements from a filter's state, and continuing from a snapshot.
-#include "filter/step/forecast.hpp"
-
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -1,11 +1,11 @@
 // One step must not allocate.
 #include <gtest/gtest.h>
 
+#include <utility>
 #include <vector>
 
-#include "filter/step/bank_filter.hpp"
-#include "filter/step/equations/filter_step.hpp"
-#include "filter/step/equations/predicted_mixture.hpp"
+#include "filter/step/combined_filter.hpp"
+#include "filter/step/imm_filter.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/allocation_counter.hpp"
@@ -19,31 +19,33 @@ Bank with_logit(Bank bank) {
   return bank;
 }
 
+template <class Filter>
+void run_without_allocation(Filter filter, const Trajectory& run) {
+  const long before = test::allocations;
+  for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+  EXPECT_EQ(test::allocations - before, 0) << "n = " << run.state.rows();
+}
+
 template <int N, int NY>
 void step_without_allocation(const Bank& modes, const FilterOptions& options) {
   const Bank bank = test::steppable(modes, options.variant);
   Trajectory run = test::simulate_bank(bank, 30, 1);
-  const FilterModel<N, NY> model(bank, options);
-  FilterStep<N, NY> step(model);
-  FilterState<N> state = start(model, run.state.col(0));
-  CombinedInnovation combined(bank.C.rows());
-  Eigen::VectorXd mean(bank.structure.states);
-  Eigen::MatrixXd S(bank.C.rows(), bank.C.rows());
-  Gaussian<N> estimate(bank.structure.states);
-  Eigen::VectorXd pit(bank.C.rows()), weights(step.predicted_probability.size());
+  ImmFilter<N, NY> filter(bank, options);
+  filter.start(run.state.col(0));
+  Eigen::VectorXd mean(bank.structure.states), pit(bank.C.rows()), width(bank.C.rows());
+  Eigen::MatrixXd S(bank.C.rows(), bank.C.rows()), P(bank.structure.states, bank.structure.states);
   const long before = test::allocations;
   for (Eigen::Index k = 1; k < run.samples(); ++k) {
-    predict(model, state, run.input.col(k - 1), step);
-    combine(model, step, mean, S);
     if (k % 7 == 0) {
-      skip_measurement(step, state);
+      filter.step(run.input.col(k - 1));
     } else {
+      filter.predict(run.input.col(k - 1));
+      filter.combine(mean, S);
       if (k % 5 == 0 && run.state.rows() > 1) run.state(0, k) = std::nan("");
-      update(model, run.state.col(k), step, state);
-      combined.observe(bank.C, mean, S, run.state.col(k));
-      probability_transform(run.state.col(k), step, weights, pit);
+      double log_density = filter.update(run.state.col(k));
+      filter.transform(run.state.col(k), pit, width, log_density);
     }
-    merge(state.modes, state.mode_probability, estimate);
+    filter.merge(mean, P);
   }
   EXPECT_EQ(test::allocations - before, 0) << name_of(options.variant) << "n = " << bank.structure.states;
 }
@@ -65,10 +67,7 @@ TEST(NoAllocation, TheBankFilter) {
     run.time_s.tail(10).array() += 3.0;
     run.time_s.tail(5).array() += 2.0 * longest_gap_steps;
     run.state(0, 12) = std::nan("");
-    BankFilter filter(bank, {});
-    const long before = test::allocations;
-    for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
-    EXPECT_EQ(test::allocations - before, 0) << "n = " << n;
+    run_without_allocation(BankFilter(bank, {}), run);
   }
 }
 
@@ -79,10 +78,7 @@ TEST(NoAllocation, TheBankFilterOfRoundedSignals) {
     if (n > 1) bank.quantum(1) = 0.0;
     Trajectory run = test::simulate_bank(bank, 30, 1);
     run.state(0, 12) = std::nan("");
-    BankFilter filter(bank, {});
-    const long before = test::allocations;
-    for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
-    EXPECT_EQ(test::allocations - before, 0) << "n = " << n;
+    run_without_allocation(BankFilter(bank, {}), run);
   }
 }
 
@@ -102,10 +98,7 @@ TEST(NoAllocation, NorWithATransitionLogit) {
   step_without_allocation<2, 2>(bank, {});
   step_without_allocation<-1, -1>(with_logit(test::example_bank(5, 2, 3)), {});
   const Trajectory run = test::simulate_bank(bank, 30, 1);
-  BankFilter filter(bank, {});
-  const long before = test::allocations;
-  for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
-  EXPECT_EQ(test::allocations - before, 0);
+  run_without_allocation(BankFilter(bank, {}), run);
 }
 
 TEST(NoAllocation, DriftingFilterStepsWithoutAny) {
@@ -114,11 +107,19 @@ TEST(NoAllocation, DriftingFilterStepsWithoutAny) {
     Trajectory run = test::simulate_drifting(model, 60, 1);
     run.state(0, 20) = std::nan("");
     run.state.col(25).setConstant(std::nan(""));
-    BankFilter filter(model, {});
-    const long before = test::allocations;
-    for (Eigen::Index k = 0; k < run.samples(); ++k) filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
-    EXPECT_EQ(test::allocations - before, 0) << lags;
+    run_without_allocation(BankFilter(model, {}), run);
   }
+}
+
+TEST(NoAllocation, NorDoCombinedFilters) {
+  const Bank model = test::example_drifting(2, 1, 3), bank = test::example_bank(2, 1, 3);
+  Trajectory run = test::simulate_drifting(model, 60, 1);
+  run.state(0, 20) = std::nan("");
+  run.state.col(25).setConstant(std::nan(""));
+  std::vector<BankFilter> both;
+  both.emplace_back(bank, FilterOptions{});
+  both.emplace_back(model, FilterOptions{});
+  run_without_allocation(CombinedFilter(std::move(both), {0.5, 0.5}), run);
 }
 
 }  // namespace

@@ -2,8 +2,10 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <functional>
+#include <algorithm>
 #include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
@@ -78,11 +80,9 @@ TEST(MissingMeasurement, OfSomeSignalsLeavesTheOthers) {
     filter.step(1.0, run.input.col(1), run.state.col(1));
     reduced.step(0.0, run.input.col(0), run.state.col(0)(std::vector<int>{0, 2}));
     reduced.step(1.0, run.input.col(1), run.state.col(1)(std::vector<int>{0, 2}));
-    FilterSnapshot snapshot = reduced.snapshot();
-    const FilterSnapshot whole = filter.snapshot();
-    snapshot.means = whole.means;
-    snapshot.covariances = whole.covariances;
-    snapshot.mode_probability = whole.mode_probability;
+    std::vector<double> snapshot = reduced.snapshot();
+    constexpr std::size_t state = 2 + 2 * (2 + 3 + 2 + 9) + 2 + 2;  // two numbers, means, covariances, probabilities
+    std::copy_n(filter.snapshot().begin(), state, snapshot.begin());
     reduced.restore(snapshot);
     const FilterEstimate& e = reduced.step(2.0, run.input.col(2), run.state.col(2)(std::vector<int>{0, 2}));
     EXPECT_TRUE(near(partial.state.col(2), e.state, digits)) << name_of(variant);
@@ -140,19 +140,21 @@ TEST(BankFilter, ARefusedSnapshotChangesNothing) {
     for (Eigen::Index k = 0; k < samples; ++k) filter.step(by.time_s(k), by.input.col(k), by.state.col(k));
     return filter;
   };
-  const FilterSnapshot good = stepped(other, 7).snapshot();
-  const std::vector<std::function<void(FilterSnapshot&)>> spoil = {
-      [](FilterSnapshot& s) { s.means(0, 0) = std::nan(""); },
-      [](FilterSnapshot& s) { s.covariances.resize(4, 2); },
-      [](FilterSnapshot& s) { s.mode_probability.setZero(); },
-      [](FilterSnapshot& s) { s.samples.inputs(0, 0) = std::nan(""); },
-      [](FilterSnapshot& s) { s.samples.measurements.resize(1, 1); },
-      [](FilterSnapshot& s) { s.samples.whole = s.samples.samples + 1; },
+  const std::vector<double> good = stepped(other, 7).snapshot();
+  const std::size_t end = good.size();  // ... inputs (1 x 1), measurements (2 x 1), samples, whole, time
+  const std::vector<std::pair<std::size_t, double>> spoil = {
+      {1, 2.0},                 // started
+      {4, std::nan("")},        // a mean
+      {6, 3.0},                 // rows of a covariance
+      {8, -1.0},                // a variance
+      {end - 8, std::nan("")},  // an input
+      {end - 7, 1.0},           // rows of the measurements
+      {end - 2, 8.0},           // more whole samples than samples
   };
-  for (std::size_t i = 0; i < spoil.size(); ++i) {
+  for (const auto& [i, value] : spoil) {
     BankFilter filter = stepped(run, 10), untouched = stepped(run, 10);
-    FilterSnapshot spoilt = good;
-    spoil[i](spoilt);
+    std::vector<double> spoilt = good;
+    spoilt[i] = value;
     EXPECT_THROW(filter.restore(spoilt), std::invalid_argument) << i;
     const FilterEstimate& a = filter.step(run.time_s(10), run.input.col(10), run.state.col(10));
     const FilterEstimate& b = untouched.step(run.time_s(10), run.input.col(10), run.state.col(10));

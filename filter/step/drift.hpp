@@ -5,7 +5,34 @@
 #include <utility>
 #include <vector>
 
+#include "modebank/filter/wandering.hpp"
+
 namespace modebank {
+
+/// Drift of the coefficients of scaled regressors, in units of the noise variance v (method: section 6).
+struct DriftRates {
+  double q = 0.0;     ///< variance added to every coefficient per step; 0 for constant coefficients
+  double p0 = 0.0;    ///< variance of every coefficient at the start; if q and p0 are 0, coefficients are fixed
+  double leak = 1.0;  ///< factor per step on the difference from theta0, in (0, 1]
+
+  bool operator==(const DriftRates&) const = default;
+};
+
+/// Log score of the settings that were chosen on a grid, on the training runs.
+struct GridTuning {
+  double log_score = 0.0;    ///< log score of the training runs [nats/sample]
+  Eigen::Index samples = 0;  ///< number of scored training samples
+};
+
+/// Drift of the coefficients of the competitor `drifting` within a run (DriftingFilter).
+struct BankDrift {
+  DriftRates rates = {};
+  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
+  Wandering wandering = Wandering::all;  ///< which coefficients drift
+  GridTuning tuning = {};                ///< how the competitor `drifting` was tuned
+
+  bool empty() const { return scale.size() == 0; }
+};
 
 /// Noise of one motion. The variance follows each output separately (method: section 6, `drifting`). e is a prediction
 /// error with Student's t distribution of variance v (s + h'Ph). P is the covariance of the coefficients divided by v.

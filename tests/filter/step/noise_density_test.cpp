@@ -1,12 +1,10 @@
-#include "filter/step/interval_mass.hpp"
+#include "filter/step/noise_density.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <boost/math/quadrature/gauss_kronrod.hpp>
 #include <cmath>
-
-#include "filter/step/student_noise.hpp"
 
 namespace modebank {
 namespace {

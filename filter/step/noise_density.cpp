@@ -1,12 +1,9 @@
-#include "filter/step/student_noise.hpp"
+#include "filter/step/noise_density.hpp"
 
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
-#include "filter/step/interval_mass.hpp"
 #include "ident/base/distributions.hpp"
-#include "ident/base/log_two_pi.hpp"
 
 namespace modebank {
 
