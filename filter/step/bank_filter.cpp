@@ -263,7 +263,7 @@ void BankFilter::restore(std::span<const double> snapshot) {
   if (read.next() != snapshot_format)
     throw std::invalid_argument("the snapshot comes from another version of the library, or not from a filter");
   const double started = read.next();
-  if (started != 0.0 && started != 1.0) read.refuse();
+  if (started != 0.0 && started != 1.0) NumbersReader::refuse();
   Equations equations = *equations_;
   SampleFeed feed = feed_;
   std::visit(
@@ -274,7 +274,7 @@ void BankFilter::restore(std::span<const double> snapshot) {
       equations.filter);
   visit_parts(feed.parts(), read);
   feed.settle();
-  if (!read.left.empty()) read.refuse();
+  if (!read.left.empty()) NumbersReader::refuse();
   *equations_ = std::move(equations);
   feed_ = feed;
   started_ = started == 1.0;

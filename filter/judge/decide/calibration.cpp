@@ -1,8 +1,6 @@
 #include "filter/judge/decide/calibration.hpp"
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"

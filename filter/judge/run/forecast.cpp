@@ -1,7 +1,6 @@
 #include "filter/judge/run/forecast.hpp"
 
 #include <cmath>
-#include <utility>
 
 #include "filter/judge/run/sample_paths.hpp"
 #include "filter/step/drifting_forecast.hpp"

@@ -1,5 +1,3 @@
-#include <algorithm>
-#include <utility>
 #include <vector>
 
 #include "filter/learn/competitors/noise_by_input.hpp"

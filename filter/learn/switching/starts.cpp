@@ -1,7 +1,6 @@
 #include "filter/learn/switching/starts.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>

@@ -1,9 +1,7 @@
 #include "filter/learn/switching/transition_regression.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "ident/base/linalg.hpp"
 

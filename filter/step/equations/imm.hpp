@@ -49,6 +49,8 @@ struct FilterStep {
   TransitionWorkspace transition;
   Eigen::VectorXd log_likelihood;          ///< K
   PartialSensor<N, NY> partial;            ///< sensor of the last measurement; `missing` is 0 if it was complete
+  Eigen::Matrix<double, N, 1> mean;        ///< of the predicted mixture
+  Eigen::Matrix<double, NY, NY> spread;    ///< of the predicted measurement
   Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
   Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
 
@@ -56,6 +58,8 @@ struct FilterStep {
       : predicted_probability(model.mode_count()),
         transition(model.mode_count(), model.transition_logit),
         partial(model.structure.dimension(), model.C.rows()),
+        mean(model.structure.dimension()),
+        spread(model.C.rows(), model.C.rows()),
         difference(model.structure.dimension()),
         residual(model.C.rows()) {
     const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
@@ -100,14 +104,14 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
 inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
                            MixingWeights& weights) {
   auto& W = weights.matrix;
-  c.setZero();
-  for (Eigen::Index i = 0; i < mu.size(); ++i)
-    for (Eigen::Index j = 0; j < mu.size(); ++j) c(j) += W(i, j) = T(i, j) * mu(i);
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
-    if (c(j) < impossible_probability)
-      W.col(j) = Eigen::VectorXd::Unit(mu.size(), j);
-    else
-      W.col(j) *= 1.0 / c(j);
+    double sum = 0.0;
+    for (Eigen::Index i = 0; i < mu.size(); ++i) sum += T(i, j) * mu(i);
+    c(j) = sum;
+    const bool possible = sum >= impossible_probability;
+    const double inverse = 1.0 / sum;
+    for (Eigen::Index i = 0; i < mu.size(); ++i)
+      W(i, j) = possible ? T(i, j) * mu(i) * inverse : static_cast<double>(i == j);
   }
 }
 

@@ -13,19 +13,21 @@
 namespace modebank {
 
 /// Moments of the predicted mixture, after `predict`: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)').
-template <int N, int NY, class State, class Covariance>
-void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, State&& x, Covariance&& S) {
+template <int N, int NY>
+void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, Eigen::VectorXd& x, Eigen::MatrixXd& S) {
   const Eigen::VectorXd& c = step.predicted_probability;
-  x.setZero();
+  step.mean.setZero();
   for (std::size_t j = 0; j < step.kalman.size(); ++j)
-    x += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
-  S.setZero();
+    step.mean += c(static_cast<Eigen::Index>(j)) * step.kalman[j].predicted.mean;
+  step.spread.setZero();
   for (std::size_t j = 0; j < step.kalman.size(); ++j) {
     const double weight = c(static_cast<Eigen::Index>(j));
-    step.difference = step.kalman[j].predicted.mean - x;
+    step.difference = step.kalman[j].predicted.mean - step.mean;
     small::multiply(step.residual, model.C, step.difference);
-    small::add_about_mean(S, weight, step.kalman[j].innovation_covariance, step.residual);
+    small::add_about_mean(step.spread, weight, step.kalman[j].innovation_covariance, step.residual);
   }
+  x = step.mean;
+  S = step.spread;
 }
 
 /// A mixture of normal distributions of one signal.
