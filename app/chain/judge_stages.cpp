@@ -1,3 +1,4 @@
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -8,6 +9,7 @@
 #include "app/config/free_run_check.hpp"
 #include "filter/judge/decide/diagnostics.hpp"
 #include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/run/free_run.hpp"
 #include "filter/judge/score/combination.hpp"
 #include "filter/judge/score/scores.hpp"
 #include "filter/judge/score/statistics.hpp"
@@ -62,11 +64,7 @@ void keep_for_finding(const Scored& scored, const Trajectory& run, bool judged, 
   RunEvaluation kept;
   if (run.role == Role::train && scored.name == "bank") kept.pit = std::move(e.pit);
   if (judged) kept.log_density = std::move(e.log_density);
-  if (judged && scored.name == "bank") {
-    kept.innovation.resize(e.innovation.rows(), 0);
-    kept.innovation_covariance = std::move(e.innovation_covariance);
-    if (scored.stream->labelled) kept.mode_probability = std::move(e.mode_probability);
-  }
+  if (judged && scored.name == "bank" && scored.stream->labelled) kept.mode_probability = std::move(e.mode_probability);
   e = std::move(kept);
 }
 
@@ -128,6 +126,29 @@ bool streams_evaluations(const Recording& recording) {
   return recording.transitions(Role::train) + recording.transitions(Role::test) > most_in_memory;
 }
 
+std::vector<FreeRun> free_runs(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& filter,
+                               const FreeRunOptions& options) {
+  if (options.samples == 0) return {};
+  std::vector<FreeRun> result(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { result[i] = free_run(bank, runs[i], filter, options); });
+  return result;
+}
+
+std::vector<std::string> remarks(const std::string& filter, const std::vector<Trajectory>& runs,
+                                 const std::vector<FreeRun>& free_runs) {
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < free_runs.size(); ++i) {
+    for (const std::string& note : free_runs[i].notes)
+      if (filter == "bank")  // these remarks concern the data, so they are the same for all filters
+        lines.push_back(fmt::format("free run of {}: run {} {}", filter, runs[i].run, note));
+    if (const Index lost = free_runs[i].lost_paths; lost > 0)
+      lines.push_back(fmt::format("free run of {}: run {}: {} sample paths left the finite range and were taken out",
+                                  filter, runs[i].run, lost));
+  }
+  return lines;
+}
+
 FilterScores score_filter(const std::string& name, const Bank& bank, const Recording& recording,
                           const FilterOptions& filter, const ScoringOptions& scoring, const EvaluationStream* stream) {
   const std::vector<Trajectory>& runs = recording.runs;
@@ -142,8 +163,8 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                     });
 }
 
-std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
-                                           const EvaluationStream* stream) {
+std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring,
+                                           const Archive& archive, const EvaluationStream* stream) {
   const std::vector<LearnedFilter> all = learned_filters(archive, filter);
   if (all.size() < 2) return std::nullopt;
   std::vector<std::string> names;

@@ -3,6 +3,7 @@
 #include <bit>
 #include <concepts>
 #include <type_traits>
+#include <utility>
 
 #include "app/chain/build_info.hpp"
 #include "io/files/sha256.hpp"
@@ -106,7 +107,28 @@ std::string key_of(Stage stage, const Inputs& inputs, const Earlier&... earlier)
   return sha256_hex(key.text());
 }
 
+constexpr Index sample_paths = 400;  // of a free run
+
 }  // namespace
+
+ScoringOptions scoring_inputs(const ChainOptions& options) {
+  ScoringOptions scoring = options.scoring;
+  scoring.seed = options.seed;
+  FreeRunOptions& free_run = scoring.free_run;
+  if (free_run.samples == 0) free_run = {};  // without a free run, its options must not change the key
+  // If transition probabilities depend on state and input, each path switches elsewhere, and moments do not show this.
+  const bool drawn = options.bank.transition == TransitionSource::logit && free_run.samples > 0;
+  free_run.seed = drawn ? options.seed : 0;
+  free_run.paths = drawn ? sample_paths : 0;
+  return scoring;
+}
+
+ChainInputs chain_inputs(const ChainOptions& options) {
+  LearningInputs learning = learning_inputs(options);
+  const ScoringOptions scoring = scoring_inputs(options);
+  const FitOptions window = learning.windows.window;
+  return {std::move(learning), {options.data}, {window, scoring}, {options.filter, scoring}};
+}
 
 StageKeys stage_keys(const ChainInputs& inputs, const std::string& data_hash) {
   using enum Stage;

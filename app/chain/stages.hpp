@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "app/chain/listener.hpp"
-#include "app/chain/stage_inputs.hpp"
+#include "app/chain/stage_key.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "io/archive/archive.hpp"
 
@@ -39,9 +39,9 @@ FilterScores score_filter(const std::string& name, const Bank& bank, const Recor
                           const EvaluationStream* stream = nullptr);
 
 /// Scores the combination of all filters of the archive; call it after score_ahead. Returns nothing if there is only
-/// one filter. Adds rows with the weights of free runs.
-std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive,
-                                           const EvaluationStream* stream = nullptr);
+/// one filter.
+std::optional<FilterScores> score_combined(const FilterOptions& filter, const ScoringOptions& scoring,
+                                           const Archive& archive, const EvaluationStream* stream = nullptr);
 
 /// Adds the predictions of each filter and of the combination, for all configured horizons.
 void score_ahead(const FilterOptions& filter, const ScoringOptions& scoring, Archive& archive);

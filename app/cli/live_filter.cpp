@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "app/chain/stage_inputs.hpp"
 #include "filter/judge/score/combination.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_combination.hpp"
 #include "modebank/base/error.hpp"

@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "app/chain/stage_inputs.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/archive/load_bank.hpp"
 #include "modebank/base/eigen.hpp"
