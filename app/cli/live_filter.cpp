@@ -14,17 +14,52 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank::app {
+
 /// The filter kf always uses the global model.
 std::string tracked_bank(const Config& config) {
-  TrackedFilter filter = config.track.filter == TrackedFilter::combined ? TrackedFilter::bank : config.track.filter;
-  if (filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf) filter = TrackedFilter::baseline;
-  return std::string(name_of(filter));
+  const bool single = config.track.filter == TrackedFilter::bank && config.filter.variant == FilterVariant::kf;
+  return std::string(name_of(single ? TrackedFilter::baseline : config.track.filter));
 }
 
-FilterOptions tracked_options(const Config& config) {
-  if (tracked_bank(config) == "bank") return config.filter;
-  return competitor_filter(std::string(name_of(config.track.filter)));
+namespace {
+
+FilterOptions options_of(const std::string& which, const Config& config) {
+  return which == "bank" ? config.filter : competitor_filter(which);
 }
+
+OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const Config& config) {
+  Bank bank = load_bank(archive, which);
+  const FilterOptions options = options_of(which, config);
+  CombinedFilter filter(BankFilter(bank, options));
+  const Eigen::Index lags = std::max(bank.structure.state_lags, bank.structure.first_transition() + 1);
+  return {std::move(bank), options, lags, std::move(filter)};
+}
+
+/// The filters that the archive combines one sample ahead, with their weights after training. The bank is the first.
+OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
+  const std::vector<CombinationRow> rows = load_combination(archive);
+  std::vector<std::string> names;
+  for (const CombinationRow& row : rows)
+    if (row.role == Role::train && row.horizon == 1) names.push_back(row.filter);
+  if (names.empty())
+    throw DataError(archive.path().string() +
+                    ": the archive has no combined forecasts; make it again with modebank run");
+  std::vector<BankFilter> filters;
+  std::optional<OpenedFilter> bank;
+  Eigen::Index lags = 0;
+  for (const std::string& name : names) {
+    OpenedFilter opened = open_bank(archive, name, config);
+    filters.emplace_back(opened.bank, opened.options);
+    lags = std::max(lags, opened.lags);
+    if (!bank) bank = std::move(opened);
+  }
+  return {combined_frame(bank->bank), bank->options, lags,
+          CombinedFilter(std::move(filters), start_weights(rows, 1, names))};
+}
+
+}  // namespace
+
+FilterOptions tracked_options(const Config& config) { return options_of(tracked_bank(config), config); }
 
 void check_columns(const Config& config, const Bank& bank, const OpenArchive& archive) {
   if (std::ssize(config.data.state) == bank.C.rows() && std::ssize(config.data.input) == bank.structure.inputs) return;
@@ -43,47 +78,9 @@ void require_bank(const Config& config, const std::string& what) {
     throw ConfigurationError(what + ": exported filters are linear; use bank, baseline, noise_only or one_motion");
 }
 
-namespace {
-
-OpenedFilter open_bank(const OpenArchive& archive, const std::string& which, const FilterOptions& options) {
-  Bank bank = load_bank(archive, which);
-  CombinedFilter filter(BankFilter(bank, options));
-  const Eigen::Index lags = std::max(bank.structure.state_lags, bank.structure.first_transition() + 1);
-  return {std::move(bank), options, lags, std::move(filter)};
-}
-
-OpenedFilter open_one(const OpenArchive& archive, const std::string& which, const Config& config) {
-  const FilterOptions options = which == "bank" ? config.filter : competitor_filter(which);
-  return open_bank(archive, which, options);
-}
-
-/// The filters that the archive combines one sample ahead, with their weights after training. The bank is the first.
-OpenedFilter open_combined(const OpenArchive& archive, const Config& config) {
-  const std::vector<CombinationRow> rows = load_combination(archive);
-  std::vector<std::string> names;
-  for (const CombinationRow& row : rows)
-    if (row.role == Role::train && row.horizon == 1) names.push_back(row.filter);
-  if (names.empty())
-    throw DataError(archive.path().string() +
-                    ": the archive has no combined forecasts; make it again with modebank run");
-  std::vector<BankFilter> filters;
-  std::optional<OpenedFilter> bank;
-  Eigen::Index lags = 0;
-  for (const std::string& name : names) {
-    OpenedFilter opened = open_one(archive, name, config);
-    filters.emplace_back(opened.bank, opened.options);
-    lags = std::max(lags, opened.lags);
-    if (!bank) bank = std::move(opened);
-  }
-  return {combined_frame(bank->bank), bank->options, lags,
-          CombinedFilter(std::move(filters), start_weights(rows, 1, names))};
-}
-
-}  // namespace
-
 OpenedFilter open_filter(const OpenArchive& archive, const Config& config) {
   if (config.track.filter == TrackedFilter::combined) return open_combined(archive, config);
-  return open_bank(archive, tracked_bank(config), tracked_options(config));
+  return open_bank(archive, tracked_bank(config), config);
 }
 
 }  // namespace modebank::app

@@ -19,7 +19,7 @@ struct OpenedFilter {
 };
 /// Throws ConfigurationError for filters that are not banks. `what`: the action, for the error message.
 void require_bank(const Config& config, const std::string& what);
-/// Name of the archive's bank that the configuration selects. For combined filters, the name of the first one.
+/// Name of the archive's bank that the configuration selects, unless it combines all of them.
 std::string tracked_bank(const Config& config);
 /// Options of the filter. Competitors use the options that `run` uses.
 FilterOptions tracked_options(const Config& config);

@@ -30,8 +30,6 @@ double period_of(const OpenArchive& archive, const Config& config) {
 }
 
 std::vector<FreeRun> predict_all(const OpenArchive& archive, const Config& config, const Recording& recording) {
-  if (config.track.filter == TrackedFilter::combined)
-    throw ConfigurationError("predict: combined filters need measurements; choose one of them (--filter)");
   const FreeRunOptions how = scoring_inputs(chain_options(config)).free_run;
   const Bank bank = load_bank(archive, tracked_bank(config));
   check_columns(config, bank, archive);
@@ -59,6 +57,8 @@ struct Task {
 Task task_of(const CommandLine& line, const OpenArchive& archive) {
   Task task{stored_config(load_configuration(archive), line.overrides), {}};
   Config& config = task.config;
+  if (config.track.filter == TrackedFilter::combined)
+    throw ConfigurationError("predict: combined filters need measurements; choose one of them (--filter)");
   if (config.scoring.free_run.samples == 0)
     throw ConfigurationError(
         "predict needs the number of measured samples at the start: --samples N (filter.simulate)");
