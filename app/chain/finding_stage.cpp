@@ -5,6 +5,7 @@
 #include "app/chain/stages.hpp"
 #include "app/text/finding_text.hpp"
 #include "app/text/judged_runs.hpp"
+#include "app/text/operating_point.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
 #include "ident/model/equations.hpp"
@@ -35,15 +36,6 @@ Rests rests_of(const Recording& recording) {
   return rests;
 }
 
-/// Standard deviation of the finite values; 0 if no value is finite.
-double standard_deviation(const Eigen::VectorXd& values) {
-  const auto known = values.array().isFinite();
-  const auto count = static_cast<double>(known.count());
-  if (count == 0.0) return 0.0;
-  const double mean = known.select(values, 0.0).sum() / count;
-  return std::sqrt(known.select(values.array() - mean, 0.0).square().sum() / count);
-}
-
 std::vector<std::pair<std::string, double>> coefficients_of(const Bank& bank) {
   const std::vector<std::string> labels = parameter_labels(bank.structure, bank.state_names, bank.input_names);
   const Eigen::VectorXd theta = bank.theta(0);
@@ -69,9 +61,11 @@ std::vector<Resolution> resolutions(const Eigen::VectorXd& quantum, const Record
       values.segment(std::ssize(at_rest), run.samples()) = run.state.row(i).transpose();
       at_rest.insert(at_rest.end(), rests[r].begin(), rests[r].end());
     }
+    app::Spread spread(1);
+    spread.add(values.transpose());
     const bool known = i < quantum.size() && quantum(i) > 0.0;
     states.push_back({recording.states[static_cast<std::size_t>(i)].name,
-                      known ? 0.0 : repeats_in_motion(values, at_rest), standard_deviation(values)});
+                      known ? 0.0 : repeats_in_motion(values, at_rest), spread.deviation()(0)});
   }
   return states;
 }

@@ -5,34 +5,26 @@
 
 #include <algorithm>
 #include <boost/algorithm/string/join.hpp>
-#include <cmath>
 #include <set>
 
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
+#include "app/text/operating_point.hpp"
 #include "filter/judge/decide/finding.hpp"
 #include "filter/step/combined_filter.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank::app {
 namespace {
 
-/// For each state, the standard deviation of the judged measurements; NaN without measurements. Only samples that can
-/// be predicted `steps` steps ahead count.
+/// For each state, the standard deviation of the judged measurements; 0 without measurements. Only samples that can be
+/// predicted `steps` steps ahead count.
 Eigen::VectorXd standard_deviation_of_measurements(const Archive& archive, Role role, Index steps) {
   if (!archive.recording || !archive.bank) return {};
-  const Recording& recording = *archive.recording;
   const Index first = archive.bank->structure.first_transition() + steps;
-  Eigen::VectorXd deviation(recording.state_count());
-  for (Index i = 0; i < deviation.size(); ++i) {
-    std::vector<double> values;
-    for (const Trajectory& run : recording.runs)
-      for (Index k = first; run.role == role && k < run.state.cols(); ++k)
-        if (std::isfinite(run.state(i, k))) values.push_back(run.state(i, k));
-    const Eigen::Map<const Eigen::ArrayXd> y(values.data(), std::ssize(values));
-    deviation(i) = values.empty() ? not_a_number : std::sqrt((y - y.mean()).square().mean());
-  }
-  return deviation;
+  Spread judged(archive.recording->state_count());
+  for (const Trajectory& run : archive.recording->runs)
+    if (run.role == role && run.state.cols() > first) judged.add(run.state.rightCols(run.state.cols() - first));
+  return judged.deviation();
 }
 
 /// FIT as defined by `compare` in Ljung's System Identification Toolbox for MATLAB: 100 (1 - ||y - prediction|| / ||y -

@@ -50,11 +50,13 @@ std::string file_line(const std::string& file, int columns) {
 /// The section on modes, at most `lines` lines. Two of these are headings.
 std::string modes_section(const Archive& archive, const FirstScreen& screen, int lines, int columns,
                           const std::string& unit) {
-  if (screen.modes.rows.empty())
-    return section("modes",
-                   fmt::format("{} in the bank, which predicts no better than `{}`; `modebank show` has them",
-                               screen.mode_count, archive.finding->better_description),
-                   2, columns);
+  const std::string simpler = archive.finding ? archive.finding->better_description : "";
+  if (screen.modes.rows.empty() && !simpler.empty())
+    return section(
+        "modes",
+        fmt::format("{} in the bank, which is not shown to predict better than `{}`; `modebank show` has them",
+                    screen.mode_count, simpler),
+        2, columns);
   const std::string indent(2, ' ');
   ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()), unit);
   std::string& table = modes.text;

@@ -9,7 +9,6 @@
 #include <set>
 
 #include "app/text/judged_runs.hpp"
-#include "app/text/number_text.hpp"
 #include "filter/judge/decide/finding.hpp"
 
 namespace modebank::app {

@@ -88,8 +88,8 @@ std::string simulating_filter(const Archive& archive, const std::string& filter)
 }
 
 /// Text such as "RMSE one step ahead 0.03 rad/s (1.72 deg/s), FIT 92.3 % (drifting 0.04); 10 steps ahead ...; in free
-/// run from 3 samples FIT 71.2 % (...)".
-std::string mean_words(const FirstScreen& screen) {
+/// run from 3 samples FIT 71.2 % (...)". `simulating`: the filter of the free run, named where it is another one.
+std::string mean_words(const FirstScreen& screen, const std::string& simulating) {
   const auto beside = [](const std::string& words) { return words.empty() ? "" : fmt::format(" ({})", words); };
   std::vector<std::string> parts;
   for (const ErrorAhead& error : screen.errors)
@@ -97,8 +97,9 @@ std::string mean_words(const FirstScreen& screen) {
         (error.steps == 1 ? std::string("RMSE one step ahead ") : fmt::format("{} steps ahead ", error.steps)) +
         error.words + beside(error.other_words));
   if (screen.free_run_start > 0)
-    parts.push_back(fmt::format("in free run from {} samples FIT {}{}", screen.free_run_start, fit_words(screen.fit),
-                                beside(screen.other_fit_words)));
+    parts.push_back(fmt::format("in free run{} from {} samples FIT {}{}",
+                                simulating == screen.filter ? "" : " of " + simulating, screen.free_run_start,
+                                fit_words(screen.fit), beside(screen.other_fit_words)));
   return screen.errors.empty() ? "" : boost::algorithm::join(parts, "; ");
 }
 
@@ -114,13 +115,14 @@ std::string warning_words(const Archive& archive) {
 void add_scores(FirstScreen& screen, const Archive& archive) {
   const std::string other = screen.filter == "bank" ? screen.competitor : "bank";
   screen.errors = errors_ahead(archive, screen.role, screen.filter, other);
-  if (const FreeRunRow* own = free_run_of(archive, simulating_filter(archive, screen.filter), screen.role)) {
+  const std::string simulating = simulating_filter(archive, screen.filter);
+  if (const FreeRunRow* own = free_run_of(archive, simulating, screen.role)) {
     screen.free_run_start = own->start;
     screen.fit = own->fit;
     if (const FreeRunRow* beside = free_run_of(archive, other, screen.role); beside && beside != own)
       screen.other_fit_words = fmt::format("{} {}", other, fit_words(beside->fit));
   }
-  screen.mean = mean_words(screen);
+  screen.mean = mean_words(screen, simulating);
   screen.coverage = screen.coverage_lower = screen.coverage_upper = not_a_number;
   if (const DiagnosticsRow* row = diagnosis(archive, screen.filter, screen.role)) {
     screen.band = band_text(*row, screen.errors);
