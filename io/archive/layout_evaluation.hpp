@@ -142,7 +142,6 @@ void exchange_horizon(Io& io, R& rows, const Unit& states) {
 }
 
 /// - combination: weights of the filters in the combined forecasts
-/// - horizon: 0: free run
 /// - weight: mean weight over the role's runs
 /// - start: weight at the start of a run
 template <class Io, class R>

@@ -166,7 +166,7 @@ void bind_filter(py::module_& module) {
       "evaluation did, Filter(bank) by the defaults.")
       .def(py::init(&make_filter), py::arg("bank"), py::kw_only(), py::arg("which") = "bank",
            "bank: an Archive, its path, or a Bank; which: the archive's bank, or a competitor's name (baseline, "
-           "noise_only, one_motion, nonlinear). Options are the keys of the [filter] section, as variant='kf'.")
+           "noise_only, one_motion, drifting, nonlinear). Options: keys of the [filter] section, as variant='kf'.")
       .def("step", &Filter::step, py::arg("t"), py::arg("u"), py::arg("y"),
            "The next sample in the order of time: t [s] (None or NaN: one step after the last), u: the inputs recorded "
            "at it (NaN: the last known one), y: the measurement (NaN where missing; None: nothing was measured). The "
