@@ -75,7 +75,7 @@ MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_mod
 MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, refine,
                     em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant)
-MODEBANK_KEY_FIELDS(FreeRunOptions, samples, horizon, paths, seed)
+MODEBANK_KEY_FIELDS(FreeRunOptions, samples, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, free_run, seed)
 
 MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
@@ -107,19 +107,11 @@ std::string key_of(Stage stage, const Inputs& inputs, const Earlier&... earlier)
   return sha256_hex(key.text());
 }
 
-constexpr Index sample_paths = 400;  // of a free run
-
 }  // namespace
 
 ScoringOptions scoring_inputs(const ChainOptions& options) {
   ScoringOptions scoring = options.scoring;
-  scoring.seed = options.seed;
-  FreeRunOptions& free_run = scoring.free_run;
-  if (free_run.samples == 0) free_run = {};  // without a free run, its options must not change the key
-  // If transition probabilities depend on state and input, each path switches elsewhere, and moments do not show this.
-  const bool drawn = options.bank.transition == TransitionSource::logit && free_run.samples > 0;
-  free_run.seed = drawn ? options.seed : 0;
-  free_run.paths = drawn ? sample_paths : 0;
+  scoring.seed = scoring.free_run.seed = options.seed;
   return scoring;
 }
 

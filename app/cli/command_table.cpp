@@ -154,8 +154,6 @@ std::vector<Command> commands_to_use() {
        {"data", "filter", "track.filter", "job"},
        {as_json(),
         {"samples", "N", "number of measured samples at the start; short for --filter.simulate", "filter.simulate"},
-        {"horizon", "H", "number of samples to predict; short for --filter.simulate_horizon",
-         "filter.simulate_horizon"},
         {"filter", "NAME", "filter of the archive; short for --track.filter", "track.filter"},
         output("FILE", "CSV file (standard output)")},
        run_predict,

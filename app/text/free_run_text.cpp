@@ -11,11 +11,12 @@ namespace {
 /// Text such as "95.1 94.8": one number for each state.
 std::string percents(const Eigen::VectorXd& shares) { return size_list((100.0 * shares).eval(), 1); }
 
-std::string caption(const FreeRunRow& bank) {
-  return fmt::format("\nFree run: {} measured samples at the beginning, then inputs alone; by {}\n", bank.start,
-                     bank.method == FreeRunMethod::moments
-                         ? "the modes' moments (each mode taken for a Gaussian)"
-                         : "sample paths (log score: of a Gaussian per mode; drifting: by moments)");
+std::string caption(const Archive& archive) {
+  return fmt::format("\nFree run: {} measured samples at the beginning, then inputs alone; by {}\n",
+                     archive.free_runs.front().start,
+                     archive.bank && !archive.bank->transition_logit.empty()
+                         ? "sample paths (log score: of a Gaussian per mode; other filters: by moments)"
+                         : "the modes' moments (each mode taken for a Gaussian)");
 }
 
 }  // namespace
@@ -42,7 +43,7 @@ std::string free_run_text(const Archive& archive, int width) {
                fixed_or_short(row.log_score, 4), size_list(row.rmse, 5), size_list(row.nrmse, 3), size_list(row.fit, 1),
                percents(row.coverage_50), percents(row.coverage_90), percents(row.coverage_95)});
   }
-  const std::string text = caption(archive.free_runs.front()) + table.text(width);
+  const std::string text = caption(archive) + table.text(width);
   return lost == 0 ? text : text + fmt::format("{} sample paths left the finite range and were taken out\n", lost);
 }
 

@@ -11,7 +11,6 @@
 #include "filter/step/drifting_forecast.hpp"
 #include "filter/step/feed/run_samples.hpp"
 #include "filter/step/imm_filter.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
@@ -169,7 +168,7 @@ std::vector<StateForecast> BankFilter::forecast(const Eigen::Ref<const Eigen::Ma
           feed.push(not_a_number, m > 0 && i < inputs.cols() ? Eigen::VectorXd(inputs.col(i)) : held, none);
           ahead.step(feed.inputs());
           StateForecast& one = result[static_cast<std::size_t>(i)];
-          ahead.moments(one.state, one.covariance);
+          ahead.merge(one.state, one.covariance);
           one.mode_probability = ahead.predicted_probability();
         }
       },
@@ -179,7 +178,7 @@ std::vector<StateForecast> BankFilter::forecast(const Eigen::Ref<const Eigen::Ma
 
 namespace {
 
-constexpr double snapshot_format = 4.0;
+constexpr double snapshot_format = 5.0;
 
 /// Appends the parts of a state to a list of numbers. The sizes of a matrix precede its entries.
 struct NumbersWriter {

@@ -1,6 +1,7 @@
 #include "filter/step/combined_filter.hpp"
 
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "filter/step/equations/arithmetic.hpp"
@@ -102,6 +103,31 @@ void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
   combined_.innovation = mixed.innovation;
   combined_.normalise(mixed.innovation_covariance, measurement);
   mixed.nis = combined_.nis;
+}
+
+std::vector<StateForecast> CombinedFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
+                                                    Index steps) const {
+  std::vector<StateForecast> mixed = filters_.front().forecast(inputs, steps);
+  if (!combines_) return mixed;
+  std::vector<std::vector<StateForecast>> said;
+  std::vector<double> weights;
+  for (std::size_t i = 0; i < filters_.size(); ++i) {
+    if (!filters_[i].started()) continue;
+    said.push_back(filters_[i].forecast(inputs, steps));
+    weights.push_back(weights_.weights()[i]);
+  }
+  const double spoken = std::accumulate(weights.begin(), weights.end(), 0.0);
+  const Index n = estimate_.state.size();
+  const double value = said.empty() ? not_a_number : 0.0;
+  for (std::size_t k = 0; k < mixed.size(); ++k) {
+    Eigen::VectorXd& state = mixed[k].state.setConstant(n, value);
+    mixed[k].covariance.setConstant(n, n, value);
+    for (std::size_t i = 0; i < said.size(); ++i) state += weights[i] / spoken * said[i][k].state.head(n);
+    for (std::size_t i = 0; i < said.size(); ++i)
+      small::add_about_mean(mixed[k].covariance, weights[i] / spoken, said[i][k].covariance.topLeftCorner(n, n),
+                            said[i][k].state.head(n) - state);
+  }
+  return mixed;
 }
 
 CombinedFilter::Snapshot CombinedFilter::snapshot() const {

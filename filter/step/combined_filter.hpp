@@ -30,6 +30,8 @@ class CombinedFilter {
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   bool started() const { return filters_.front().started(); }
   void restart();
+  /// As BankFilter::forecast. The filters that have started keep their present weights. Modes are those of the first.
+  std::vector<StateForecast> forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index steps) const;
 
   struct Snapshot {
     std::vector<std::vector<double>> filters;

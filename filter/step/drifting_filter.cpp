@@ -92,18 +92,6 @@ void DriftingFilter::start(const Vector& z) {
   v_ = start_variance_;
   level_ = start_level_;
   z_ = z;
-  own_ = 1;
-  if (model_.direction.size() > 0 || model_.switches()) own_ = v_.size();
-}
-
-/// Some outputs are measured and others are not: from now on their P differ. (With levels, they have differed before.)
-void DriftingFilter::own_P() {
-  for (Index i = own_; i < v_.size(); ++i) {
-    P_[static_cast<std::size_t>(i)] = P_.front();
-    Ph_.col(i) = Ph_.col(0);
-    growth_(i, 0) = growth_(0, 0);
-  }
-  own_ = v_.size();
 }
 
 /// The mixture of the levels' Gaussians from which a level starts a step, for one output.
@@ -139,7 +127,7 @@ void DriftingFilter::pass_time() {
   for (Index j = 0; j < levels(); ++j) {
     auto theta = theta_.middleCols(at(j, 0), v_.size());
     if (leak != 1.0) theta = model_.theta0 + leak * (theta - model_.theta0);
-    for (Index i = 0; i < own_; ++i) {
+    for (Index i = 0; i < v_.size(); ++i) {
       Eigen::MatrixXd& P = P_[static_cast<std::size_t>(at(j, i))];
       if (leak != 1.0) P *= leak * leak;
       if (model_.direction.size() == 0)
@@ -151,16 +139,14 @@ void DriftingFilter::pass_time() {
 }
 
 void DriftingFilter::predict_level(Index j) {
-  for (Index i = 0; i < own_; ++i) {
+  for (Index i = 0; i < v_.size(); ++i) {
     auto Ph = Ph_.col(at(j, i));
     Ph.noalias() = P(j, i).selfadjointView<Eigen::Lower>() * h_;
     growth_(i, j) = model_.level_variance(i, j, v_(i)) + std::max(0.0, h_.dot(Ph));
-  }
-  for (Index i = 0; i < v_.size(); ++i) {
     const double value = z_(i) + theta_.col(at(j, i)).dot(h_);
     // A failed prediction is not a missing sample: the value stays, and its spread is NaN.
     of_level_(i, j) = std::isnan(value) ? z_(i) : std::clamp(value, -largest_mean, largest_mean);
-    spread_(i, j) = std::sqrt(v_(i) * growth_(of(i), j));
+    spread_(i, j) = std::sqrt(v_(i) * growth_(i, j));
   }
 }
 
@@ -173,7 +159,7 @@ void DriftingFilter::predict(const Vector& inputs) {
     variance_(i) = 0.0;
     for (Index j = 0; j < levels(); ++j) {
       const double away = of_level_(i, j) - prediction_(i);
-      variance_(i) += predicted_level_(j) * (v_(i) * growth_(of(i), j) + away * away);
+      variance_(i) += predicted_level_(j) * (v_(i) * growth_(i, j) + away * away);
     }
   }
 }
@@ -211,9 +197,8 @@ void DriftingFilter::learn() {
   for (Index j = 0; j < levels(); ++j)
     for (Index i = 0; i < v_.size(); ++i) {
       if (std::isnan(innovation_(i))) continue;
-      const auto Ph = Ph_.col(at(j, of(i)));
-      theta_.col(at(j, i)) += error_(i, j) / growth_(of(i), j) * Ph;
-      if (i >= own_) continue;
+      const auto Ph = Ph_.col(at(j, i));
+      theta_.col(at(j, i)) += error_(i, j) / growth_(i, j) * Ph;
       Eigen::MatrixXd& P = P_[static_cast<std::size_t>(at(j, i))];
       add_square(-1.0 / growth_(i, j), Ph, P);
       make_usable(P);
@@ -226,7 +211,7 @@ void DriftingFilter::adapt_variance() {
   for (Index i = 0; i < v_.size(); ++i) {
     if (std::isnan(innovation_(i))) continue;
     double square = 0.0;
-    for (Index j = 0; j < levels(); ++j) square += level_(j) * (error_(i, j) * error_(i, j) / growth_(of(i), j));
+    for (Index j = 0; j < levels(); ++j) square += level_(j) * (error_(i, j) * error_(i, j) / growth_(i, j));
     v_(i) = std::max(running.lam * v_(i) + (1.0 - running.lam) * square, running.floor(i));
   }
 }
@@ -239,7 +224,6 @@ double DriftingFilter::update(const Vector& measured) {
     for (Index j = 0; j < levels(); ++j) error_(i, j) = sample_(i) - of_level_(i, j);
   }
   const Index missing = innovation_.array().isNaN().count();
-  if (missing > 0 && missing < innovation_.size()) own_P();
   const double log_density = weigh_levels(innovation_.size(), level_);
   learn();
   adapt_variance();
@@ -279,9 +263,8 @@ void DriftingFilter::merge(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) c
 
 void DriftingFilter::settle() const {
   const auto variances = [](const Eigen::MatrixXd& P) { return P.allFinite() && (P.diagonal().array() >= 0.0).all(); };
-  if ((own_ != 1 && own_ != v_.size()) || !z_.allFinite() || !theta_.allFinite() ||
-      !std::all_of(P_.begin(), P_.end(), variances) || !v_.allFinite() || (v_.array() <= 0.0).any() ||
-      !level_.allFinite() || (level_.array() < 0.0).any() || level_.sum() <= 0.0)
+  if (!z_.allFinite() || !theta_.allFinite() || !std::all_of(P_.begin(), P_.end(), variances) || !v_.allFinite() ||
+      (v_.array() <= 0.0).any() || !level_.allFinite() || (level_.array() < 0.0).any() || level_.sum() <= 0.0)
     throw std::invalid_argument("the snapshot has drift values that are not finite or out of range");
 }
 

@@ -63,8 +63,7 @@ struct DriftingModel {
 /// - After a step the coefficients are updated, then the variance, then leak and q. So a sample does not influence
 ///   its own score.
 /// - A step without a measurement also applies leak and q, because time passes. Its prediction replaces the sample.
-/// - If some signals of a sample are missing, only the coefficients of the other signals learn. From then on each
-///   output has its own P; before, all have that of the first.
+/// - If some signals of a sample are missing, only the coefficients of the other signals learn.
 /// - If samples are further apart, one step is taken per sample period with the inputs held, as in other banks.
 /// - The variance of a level is at least quantum^2 / 12, that of rounding.
 class DriftingFilter {
@@ -87,8 +86,8 @@ class DriftingFilter {
   const Eigen::VectorXd& predicted_probability() const { return one_; }
   const Eigen::VectorXd& mode_probability() const { return one_; }
   DriftingForecast forecast() const;
-  auto parts() { return std::tie(z_, theta_, P_, v_, level_, own_); }
-  auto parts() const { return std::tie(z_, theta_, P_, v_, level_, own_); }
+  auto parts() { return std::tie(z_, theta_, P_, v_, level_); }
+  auto parts() const { return std::tie(z_, theta_, P_, v_, level_); }
   void settle() const;
 
   const Eigen::VectorXd& z() const { return z_; }                    ///< n * state_lags, newest sample first
@@ -98,10 +97,10 @@ class DriftingFilter {
   const Eigen::VectorXd& innovation() const { return innovation_; }  ///< n, of the last update; NaN where missing
   /// r x r (lower triangle), covariance of an output's coefficients in a level, divided by v.
   const Eigen::MatrixXd& P(Eigen::Index level, Eigen::Index output) const {
-    return P_[static_cast<std::size_t>(at(level, of(output)))];
+    return P_[static_cast<std::size_t>(at(level, output))];
   }
   /// s + h'Ph of the first level, the variance of an output's prediction divided by v.
-  double growth(Eigen::Index output) const { return growth_(of(output), 0); }
+  double growth(Eigen::Index output) const { return growth_(output, 0); }
   /// P(output <= measured value + away) before the last update. `weight`: probabilities of the levels, J.
   double probability(Eigen::Index output, double away, const Vector& weight) const;
   /// Probabilities of the levels (J), given what came before the last update and its first `outputs` outputs. Returns
@@ -120,13 +119,10 @@ class DriftingFilter {
   Eigen::VectorXd h_, prediction_, variance_, innovation_, sample_, deviation_, weight_;
   Eigen::MatrixXd Ph_;                                  ///< r x J n
   Eigen::MatrixXd growth_, of_level_, error_, spread_;  ///< n x J: s + h'Ph, predictions, errors, standard deviations
-  Eigen::Index own_ = 1;                                ///< outputs with a P of their own: all n, or the first one
   Eigen::VectorXd one_ = Eigen::VectorXd::Ones(1);
 
   Eigen::Index levels() const { return level_.size(); }
   Eigen::Index at(Eigen::Index level, Eigen::Index output) const { return level * model_.structure.states + output; }
-  Eigen::Index of(Eigen::Index output) const { return std::min(output, own_ - 1); }  ///< whose P an output has
-  void own_P();
   void mix();
   void mix_output(Eigen::Index level, Eigen::Index output);
   void predict_level(Eigen::Index level);

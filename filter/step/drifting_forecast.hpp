@@ -41,7 +41,7 @@ class DriftingForecast {
   const Eigen::VectorXd& level_probability() const { return level_; }  ///< J, of the prediction
   Eigen::VectorXd predicted_probability() const { return Eigen::VectorXd::Ones(1); }
   /// The prediction with the preceding samples, and its covariance with the factor of the horizon.
-  void moments(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) const {
+  void merge(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) const {
     mean = z_;
     covariance = model_.running.factor_at(steps_) * state_covariance();
   }

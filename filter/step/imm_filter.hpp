@@ -76,19 +76,6 @@ class ImmFilter {
   }
 
   ImmFilter forecast() const { return *this; }
-  /// Mean and covariance of the predicted state, combined over all modes.
-  void moments(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) const {
-    mean.setZero();
-    for (std::size_t j = 0; j < step_.kalman.size(); ++j)
-      mean += step_.predicted_probability(static_cast<Eigen::Index>(j)) * step_.kalman[j].predicted.mean;
-    covariance.setZero();
-    for (std::size_t j = 0; j < step_.kalman.size(); ++j) {
-      const Gaussian<N>& mode = step_.kalman[j].predicted;
-      const Eigen::Matrix<double, N, 1> apart = mode.mean - mean;
-      small::add_about_mean(covariance, step_.predicted_probability(static_cast<Eigen::Index>(j)), mode.covariance,
-                            apart);
-    }
-  }
   /// Log density of a complete measurement [nats]; `error`: measurement minus combined prediction. Changes no state.
   template <class Y, class Error>
   double observe(const Y& y, Error&& error) {

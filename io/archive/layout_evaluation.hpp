@@ -152,19 +152,18 @@ void exchange_combination(Io& io, R& rows) {
 }
 
 /// - free_run: scores of free runs, with `filter.simulate`
-/// - method: `moments` or `paths`
 /// - start: number of measured samples at the start of a run
 /// - run: `*`: all runs of the role
 template <class Io, class R>
 void exchange_free_runs(Io& io, R& rows, const Unit& states) {
   using Row = FreeRunRow;
   io.optional_table("free_run", rows, column("filter", &Row::filter), column("role", &Row::role),
-                    column("run", &Row::run), column("method", &Row::method), column("start", &Row::start, "samples"),
-                    column("samples", &Row::samples), column("log_score", &Row::log_score, "nat"),
-                    column("rmse", &Row::rmse, joined(states)), column("nrmse", &Row::nrmse),
-                    column("fit", &Row::fit, "%"), column("coverage_50", &Row::coverage_50),
-                    column("coverage_90", &Row::coverage_90), column("coverage_95", &Row::coverage_95),
-                    column("coverage_99", &Row::coverage_99), column("lost_paths", &Row::lost_paths));
+                    column("run", &Row::run), column("start", &Row::start, "samples"), column("samples", &Row::samples),
+                    column("log_score", &Row::log_score, "nat"), column("rmse", &Row::rmse, joined(states)),
+                    column("nrmse", &Row::nrmse), column("fit", &Row::fit, "%"),
+                    column("coverage_50", &Row::coverage_50), column("coverage_90", &Row::coverage_90),
+                    column("coverage_95", &Row::coverage_95), column("coverage_99", &Row::coverage_99),
+                    column("lost_paths", &Row::lost_paths));
 }
 
 /// - diagnostics: consistency of each filter and mode, with intervals

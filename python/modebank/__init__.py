@@ -179,14 +179,14 @@ def identify(states: np.ndarray | Sequence[np.ndarray], inputs: np.ndarray | Seq
 
 
 def simulate(bank: Archive | Bank | Path, states: np.ndarray, inputs: np.ndarray, dt: float | None = None, *,
-             times: np.ndarray | None = None, samples: int = 1, horizon: int = 0, **options: Any) -> FreeRun:
+             times: np.ndarray | None = None, samples: int = 1, **options: Any) -> FreeRun:
     """A free run: predicts the run after its first samples, from these and the inputs alone. Returns FreeRun.
 
     bank: an Archive, its path or a Bank; states: (N, n); only the first `samples` are used, later ones may be NaN, else
     log_density scores them; inputs: (N, m); dt: sample period [s] (None: the bank's), or times:
-    (N,) [s]; horizon: samples to predict, 0: all. options: further keys of the [filter] section. Ctrl-C ends it."""
+    (N,) [s]. options: further keys of the [filter] section. Ctrl-C ends it."""
     states = np.asarray(states, dtype=float)
-    keys = {"simulate": samples, "simulate_horizon": horizon, **options}
+    keys = {"simulate": samples, **options}
     if times is None:
         of = bank if isinstance(bank, Bank) else Bank.load(os.fspath(getattr(bank, "path", bank)))
         times = np.arange(len(states)) * (dt or of.dt or 1.0)

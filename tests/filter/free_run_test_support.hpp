@@ -11,26 +11,23 @@ namespace modebank::test {
 
 using Eigen::Index;
 
-inline FreeRunOptions after(Index samples, Index paths = 0) {
+inline FreeRunOptions after(Index samples, Index paths = 400) {
   FreeRunOptions options;
   options.samples = samples;
   options.paths = paths;
   return options;
 }
 
+/// The same bank with a logit of no weight: free runs take sample paths.
+inline Bank with_paths(Bank bank) {
+  const Index d = bank.structure.dimension() + bank.structure.acting_inputs();
+  bank.transition_logit = {Eigen::MatrixXd::Zero(bank.mode_count(), d), Eigen::VectorXd::Zero(d)};
+  return bank;
+}
+
 /// A bank of one mode with exactly measured states.
 inline Bank arx_bank(const LinearStructure& s, const Eigen::VectorXd& theta) {
-  Bank bank;
-  bank.structure = s;
-  Mode mode;
-  mode.model = unpack(s, theta);
-  mode.Q = Eigen::MatrixXd::Zero(s.dimension(), s.dimension());
-  mode.Q.topLeftCorner(s.states, s.states).setIdentity();
-  bank.modes = {mode};
-  bank.C = Eigen::MatrixXd::Identity(s.states, s.dimension());
-  bank.R = Eigen::MatrixXd::Zero(s.states, s.states);
-  bank.initial_probability = Eigen::VectorXd::Ones(1);
-  return bank;
+  return one_mode_bank(s, theta, Eigen::VectorXd::Ones(s.states));
 }
 
 /// theta of a stable model: -0.4, then small values for each older sample.

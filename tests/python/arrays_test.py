@@ -272,8 +272,8 @@ class FreeRuns(unittest.TestCase):
         np.testing.assert_allclose(free.mean[1:], states[1:], atol=1e-9)
         self.assertTrue(np.isnan(free.mean[0]).all())
         self.assertTrue((free.lower[1:] < free.upper[1:]).all())
-        short = modebank.simulate(bank, states, inputs, samples=3, horizon=5)
-        np.testing.assert_array_equal(np.flatnonzero(short.mode >= 0), np.arange(3, 8))
+        short = modebank.simulate(bank, states, inputs, samples=3)
+        np.testing.assert_array_equal(np.flatnonzero(short.mode >= 0), np.arange(3, 50))
 
 
 class Mixtures(unittest.TestCase):

@@ -101,9 +101,6 @@ std::vector<Option> filter_options() {
               MODEBANK_FIELD(scoring.free_run.samples))
           .touch("when you will use the model as a simulator: 50, or as many samples as its start needs",
                  competitor_scores, basic),
-      numeric("filter.simulate_horizon", between(0, 1'000'000'000), "samples",
-              "length of a free run; 0: to the end of the run", MODEBANK_FIELD(scoring.free_run.horizon))
-          .touch("when runs are long: the length over which your simulations must be good", competitor_scores),
   };
 }
 

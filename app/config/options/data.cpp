@@ -49,8 +49,7 @@ Option quantum_option() {
               "rounding step q of the states, one for each or one for all. R is then at least q^2 / 12, and scores "
               "are masses of intervals of this width. auto: the step in the training runs, if it is at least a third "
               "of their residuals' standard deviation; none: values are exact",
-              MODEBANK_FIELD(data.quantum))
-          .touch("auto, when the finding says that measurements repeat, and they come in steps");
+              MODEBANK_FIELD(data.quantum));
   result.range = "none, auto or numbers > 0";
   result.set = [set = result.set](Config& config, const std::string& text) {
     const bool word = text == "auto" || text == "none" || text.empty();

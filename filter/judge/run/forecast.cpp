@@ -205,7 +205,7 @@ std::unique_ptr<ForecastingFilter> free_running_filter(const Bank& bank, const T
                                                        const FilterOptions& options, Index paths, std::uint64_t seed) {
   check_run(bank, run);
   if (!bank.running_noise.empty()) return std::make_unique<RunningNoiseFilter>(bank, run, true);
-  if (paths > 0) return std::make_unique<PathFilter>(bank, run, options, paths, seed);
+  if (!bank.transition_logit.empty()) return std::make_unique<PathFilter>(bank, run, options, paths, seed);
   return moment_filter(bank, run, options);
 }
 

@@ -100,7 +100,8 @@ class ForecastingFilter {
 /// A filter whose forecasts keep the levels of running noise apart. Conditions are those of evaluate_run.
 std::unique_ptr<ForecastingFilter> forecasting_filter(const Bank& bank, const Trajectory& run,
                                                       const FilterOptions& options);
-/// A filter for free runs: levels of running noise are one Gaussian. `paths`: number of sample paths; 0 for moments.
+/// A filter for free runs: levels of running noise are one Gaussian. `paths`: number of sample paths, if the bank's
+/// transitions depend on the state.
 std::unique_ptr<ForecastingFilter> free_running_filter(const Bank& bank, const Trajectory& run,
                                                        const FilterOptions& options, Eigen::Index paths,
                                                        std::uint64_t seed);

@@ -108,8 +108,7 @@ void predict_stretch(ForecastingFilter& filter, const Trajectory& run, const Sam
     interruption_point();
     filter.step_to(t);
   }
-  const Index furthest = options.horizon == 0 ? stretch.end : last + 1 + options.horizon;
-  predict_on(filter, run, end, std::min(stretch.end, furthest), out);
+  predict_on(filter, run, end, stretch.end, out);
 }
 
 }  // namespace
@@ -122,7 +121,6 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
   const std::unique_ptr<ForecastingFilter> predicting =
       free_running_filter(bank, run, filter, options.paths, derive_seed(options.seed, "free run " + run.run));
   FreeRun out = sized_free_run(bank.C.rows(), run.samples());
-  if (options.paths > 0 && bank.running_noise.empty()) out.method = FreeRunMethod::paths;
   const std::vector<SampleRange> stretches = stretches_of(run, bank.dt_s);
   for (const SampleRange& stretch : stretches) {
     const std::string where = stretches.size() > 1 ? " from sample " + std::to_string(stretch.first) + " on" : "";

@@ -7,26 +7,13 @@
 
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
-#include "modebank/base/names.hpp"
 #include "modebank/filter/options.hpp"
 
 namespace modebank {
 
-/// How a free run was computed. moments: probability, mean and covariance of every mode, exact for a constant
-/// transition matrix. Bands and densities treat every mode's distribution as Gaussian. paths: sample paths, as a bank
-/// needs whose transitions depend on the state (SamplePaths); their number is finite, so bands and densities have
-/// sampling noise.
-enum class FreeRunMethod { moments, paths };
-
-template <>
-struct EnumNames<FreeRunMethod> {
-  static constexpr Names<2> values{"moments", "paths"};
-};
-
 struct FreeRunOptions {
   Eigen::Index samples = 0;  ///< number of measured samples at the beginning; 0 turns free runs off
-  Eigen::Index horizon = 0;  ///< number of samples to predict after the measured ones; 0 predicts to the end of the run
-  Eigen::Index paths = 0;    ///< number of sample paths; 0: by moments
+  Eigen::Index paths = 400;  ///< number of sample paths, for banks that need them
   std::uint64_t seed = 1;    ///< seed of the paths; each run derives its own generator from its name
 
   bool operator==(const FreeRunOptions&) const = default;
@@ -38,7 +25,6 @@ inline Eigen::Index fewest_start_samples(const LinearStructure& structure) { ret
 /// Predictions of a run from its first samples and the inputs alone. Column k belongs to sample k; a value is NaN (a
 /// mode is -1) if the sample was not predicted. The free run restarts after each gap at which filters restart.
 struct FreeRun {
-  FreeRunMethod method = FreeRunMethod::moments;
   Eigen::MatrixXd mean;          ///< n_y x N
   Eigen::MatrixXd deviation;     ///< n_y x N, standard deviation of the measurement about `mean`
   Eigen::MatrixXd lower, upper;  ///< n_y x N, central 95 % band
@@ -50,9 +36,11 @@ struct FreeRun {
   std::vector<std::string> notes;  ///< reasons for missing predictions
 };
 
-/// Computes a free run. The conditions are those of evaluate_run. Throws std::invalid_argument for fewer samples than
-/// the model needs. Banks with running noise always use moments; their coefficients decay as in predictions at a
-/// horizon (DriftingForecast).
+/// Computes a free run by the moments of every mode, which are exact for a constant transition matrix; bands and
+/// densities treat every mode's distribution as Gaussian. Banks whose transitions depend on the state need sample paths
+/// (SamplePaths); their number is finite, so bands and densities have sampling noise. The coefficients of banks with
+/// running noise decay as in predictions at a horizon (DriftingForecast). The conditions are those of evaluate_run.
+/// Throws std::invalid_argument for fewer samples than the model needs.
 FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options);
 
 /// One row of /evaluation/free_run: scores over samples that are predicted and measured. All scores are per signal,
@@ -60,8 +48,7 @@ FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& f
 struct FreeRunRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;  ///< name of the run; "*": all runs of the role pooled
-  FreeRunMethod method = FreeRunMethod::moments;
+  std::string run;           ///< name of the run; "*": all runs of the role pooled
   Eigen::Index start = 0;    ///< number of measured samples at the beginning
   Eigen::Index samples = 0;  ///< scored samples
   double log_score = 0.0;    ///< mean log predictive density [nats/sample]

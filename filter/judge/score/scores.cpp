@@ -244,7 +244,6 @@ std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std
     row.filter = filter;
     row.role = role;
     row.run = run;
-    row.method = free_runs.front().method;
     row.start = options.samples;
   };
   for (const Role role : {Role::train, Role::test}) {

@@ -11,11 +11,9 @@
 namespace modebank {
 namespace {
 
-constexpr Index fewest_metric_samples = 1000, samples_per_coordinate = 5;
 constexpr double least_probability = 1e-100;  // smallest divisor whose square does not underflow
 
-/// One row per sample, one column per coordinate. A row is zero if the sample has no density. By central differences,
-/// or from the scores `at_origin` on.
+/// One row per sample, one column per coordinate, by central differences. A row is zero if the sample has no density.
 Eigen::MatrixXd gradients_of_run(const BankCoordinates& around, const Eigen::VectorXd& steps, const Trajectory& run,
                                  const FilterOptions& filter, const LookAhead& look) {
   Eigen::MatrixXd gradients(run.samples(), around.size());
@@ -73,13 +71,11 @@ SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::Vec
   return result;
 }
 
-Eigen::MatrixXd search_metric(const BankCoordinates& around, const Eigen::VectorXd& steps, const Recording& recording,
-                              const FilterOptions& filter) {
-  const std::optional<Recording> part =
-      learning_part(recording, std::max(fewest_metric_samples, samples_per_coordinate * around.size()), 1);
-  const Recording& used = part ? *part : recording;
-  return sample_gradients(around, steps, used, filter).information *
-         static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(used.transitions(Role::train));
+InformationSamples::InformationSamples(const Recording& recording, Index most)
+    : part(learning_part(recording, most, 1)) {
+  if (part)
+    factor =
+        static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(part->transitions(Role::train));
 }
 
 SampleGradients exact_sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <optional>
 
 #include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
@@ -28,9 +29,15 @@ struct SampleGradients {
 SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
                                  const Recording& recording, const FilterOptions& filter, const LookAhead& look = {});
 
-/// The information of a likelihood, roughly, as the metric of a search: from a part of the samples.
-Eigen::MatrixXd search_metric(const BankCoordinates& around, const Eigen::VectorXd& steps, const Recording& recording,
-                              const FilterOptions& filter);
+/// The samples that an information is summed over. Long training runs are reduced to stretches of all runs, the same
+/// for equal runs; the sums are multiplied by `factor`.
+struct InformationSamples {
+  std::optional<Recording> part;  ///< empty: all
+  double factor = 1.0;
+
+  /// `most`: largest number of transitions.
+  InformationSamples(const Recording& recording, Index most);
+};
 
 /// Gradients by the switching regression. They require exactly measured states (R = 0). The densities equal those of
 /// the filter, but cost far less, especially with many lags.

@@ -21,6 +21,8 @@ constexpr double first_step = 1e-3;       // step of central differences until s
 constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, because some may be undetermined
 constexpr double remaining_gain = 1e-3;   // nats
 constexpr Index iterations_per_metric = 40;
+constexpr Index fewest_metric_samples = 1000,
+                samples_per_coordinate = 5;  // a metric needs no standard error's accuracy
 
 bool is_finite(const Bank& bank) {
   return bank.R.allFinite() && bank.transition.matrix().allFinite() &&
@@ -71,7 +73,12 @@ class Neighbourhood {
     const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
     SampleGradients result;
     if (is_exact()) {
-      result = {slope(origin).gradient, search_metric(coordinates_, steps_, target_.recording, target_.filter)};
+      const InformationSamples samples(target_.recording,
+                                       std::max(fewest_metric_samples, samples_per_coordinate * size()));
+      const Recording& part = samples.part ? *samples.part : target_.recording;
+      result = sample_gradients(coordinates_, steps_, part, target_.filter);
+      result.sum = slope(origin).gradient;
+      result.information *= samples.factor;
     } else {
       result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
       result.sum += differences(origin, [this](const Bank& bank) { return target_.log_prior(bank); });

@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "filter/learn/likelihood/information.hpp"
-#include "filter/learn/refine/learning_part.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -22,24 +21,6 @@ constexpr double weight_unit_share = 0.1;  // as a share of the prior's standard
 // of samples.
 constexpr double most_numbers = 4e6;  // number of samples times number of coordinates; 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
-
-/// Samples for the standard errors. Long training runs are reduced to stretches of all runs. The information is
-/// multiplied by `factor`.
-struct ErrorSamples {
-  std::optional<Recording> part;  ///< empty: all
-  double factor = 1.0;
-};
-
-ErrorSamples error_samples(const Recording& recording, Index coordinates) {
-  constexpr std::uint64_t seed = 1;  // fixed seed, so that a bank always has the same standard errors
-  const Index most =
-      std::clamp(static_cast<Index>(most_numbers / static_cast<double>(coordinates)), fewest_samples, most_samples);
-  ErrorSamples samples{learning_part(recording, most, seed)};
-  if (samples.part)
-    samples.factor = static_cast<double>(recording.transitions(Role::train)) /
-                     static_cast<double>(samples.part->transitions(Role::train));
-  return samples;
-}
 
 /// Covariance of the parameters in the order of ParameterPlaces, and the distance from their values to the maximum.
 struct Observed {
@@ -65,7 +46,9 @@ bool is_exact(const BankCoordinates& around) {
 
 /// Empty if the information matrix is singular.
 std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
-  const ErrorSamples samples = error_samples(target.recording, around.size());
+  const Index most =
+      std::clamp(static_cast<Index>(most_numbers / static_cast<double>(around.size())), fewest_samples, most_samples);
+  const InformationSamples samples(target.recording, most);
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
   const Recording& recording = samples.part ? *samples.part : target.recording;
   const SampleGradients gradients =

@@ -23,6 +23,7 @@ using test::example_bank;
 using test::near;
 using test::simulate_bank;
 using test::stable_theta;
+using test::with_paths;
 using ::testing::HasSubstr;
 
 /// Two modes of one state that differ in everything; T is not symmetric.
@@ -101,7 +102,7 @@ TEST(FreeRun, SamplePathsAreDrawnFromAllSequencesOfModes) {
   const Bank bank = two_modes();
   const Trajectory run = simulate_bank(bank, 9, 3);
   constexpr Index paths = 20000;
-  const FreeRun found = free_run(bank, run, {}, after(1, paths));
+  const FreeRun found = free_run(with_paths(bank), run, {}, after(1, paths));
   const double R = bank.R(0, 0), of_band = 5.0 * std::sqrt(0.025 / static_cast<double>(paths));
   for (Index k = 1; k < run.samples(); ++k) {
     const Sequences exact(bank, run, k);
@@ -125,7 +126,8 @@ TEST(FreeRun, MomentsAndPathsAgreeWithLagsAndSeveralStates) {
   bank.transition = TransitionMatrix::sticky(2, 0.8);
   bank.initial_probability = Eigen::Vector2d::Constant(0.5);
   const Trajectory run = any_run(s, 60);
-  const FreeRun exact = free_run(bank, run, {}, after(20)), drawn = free_run(bank, run, {}, after(20, 10000));
+  const FreeRun exact = free_run(bank, run, {}, after(20)),
+                drawn = free_run(with_paths(bank), run, {}, after(20, 10000));
   const Eigen::ArrayXXd sd = exact.deviation.rightCols(40);
   EXPECT_LT(((drawn.mean - exact.mean).rightCols(40).array() / sd).abs().maxCoeff(), 0.06);
   EXPECT_LT((drawn.deviation.rightCols(40).array() / sd - 1.0).abs().maxCoeff(), 0.05);
@@ -133,7 +135,7 @@ TEST(FreeRun, MomentsAndPathsAgreeWithLagsAndSeveralStates) {
 }
 
 TEST(FreeRun, EqualSeedsAreEqualPaths) {
-  const Bank bank = two_modes();
+  const Bank bank = with_paths(two_modes());
   const Trajectory run = simulate_bank(bank, 50, 5);
   FreeRunOptions options = after(3, 30);
   const FreeRun one = free_run(bank, run, {}, options), same = free_run(bank, run, {}, options);
@@ -147,7 +149,7 @@ TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   bank.modes[1].model.A(0, 0) = 1e4;
   bank.transition = TransitionMatrix((Eigen::Matrix2d() << 0.9, 0.1, 0.01, 0.99).finished());
   const Trajectory run = simulate_bank(two_modes(), 200, 6);
-  const FreeRun found = free_run(bank, run, {}, after(1, 50));
+  const FreeRun found = free_run(with_paths(bank), run, {}, after(1, 50));
   EXPECT_EQ(found.lost_paths, 50);
   ASSERT_EQ(found.notes.size(), 1u);
   EXPECT_THAT(found.notes[0], HasSubstr("later predictions are not finite"));

@@ -83,19 +83,23 @@ Bank disturbed_start(const Recording& recording, const SystemTruth& truth) {
   return bank_of(recording, theta, Eigen::Vector2d(0.03, 0.06), 1e-9);
 }
 
-class RefineMeasured : public testing::TestWithParam<Index> {};
-
 /// With 1 fold the fit runs to convergence. With more folds cross-validation stops the fit.
+class RefineMeasured : public testing::TestWithParam<Index> {
+ protected:
+  static Refinement refined(const Recording& recording, const SystemTruth& truth) {
+    RefineOptions options;
+    options.restarts = 0;
+    options.folds = GetParam();
+    return refine_bank(recording, test::windows_of(recording, 25, 1), {disturbed_start(recording, truth)}, options, {});
+  }
+};
+
 TEST_P(RefineMeasured, RecoversEverythingWithinThreeStandardErrors) {
   const SystemTruth truth;
   const Recording recording = measured_runs(truth, 6, 600, 11);
-  const WindowFits fits = test::windows_of(recording, 25, 1);
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = GetParam();
-  const Refinement refined = refine_bank(recording, fits, {disturbed_start(recording, truth)}, options, {});
-  EXPECT_GT(refined.measurement.iterations, 0);
-  expect_recovery(refined.bank, truth);
+  const Refinement found = refined(recording, truth);
+  EXPECT_GT(found.measurement.iterations, 0);
+  expect_recovery(found.bank, truth);
 }
 
 /// Noise and rounding of equal size. R must be that of both.
@@ -104,13 +108,9 @@ TEST_P(RefineMeasured, FindsNoiseBesideRounding) {
   Recording recording = measured_runs(truth, 6, 600, 11);
   const double quantum = 0.3;
   round_states(recording, quantum);
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = GetParam();
-  const Refinement refined =
-      refine_bank(recording, test::windows_of(recording, 25, 1), {disturbed_start(recording, truth)}, options, {});
+  const Bank bank = refined(recording, truth).bank;
   truth.R += quantum * quantum / 12.0;
-  expect_recovery(refined.bank, truth);
+  expect_recovery(bank, truth);
 }
 
 /// Rounding alone must give no R beside its own.
@@ -120,15 +120,11 @@ TEST_P(RefineMeasured, TakesRoundingForNoNoise) {
   Recording recording = measured_runs(truth, 6, 600, 12);
   const double quantum = 0.2;
   round_states(recording, quantum);
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = GetParam();
-  const Refinement refined =
-      refine_bank(recording, test::windows_of(recording, 25, 1), {disturbed_start(recording, truth)}, options, {});
-  EXPECT_GT(refined.measurement.starts, 0);
-  EXPECT_GT(refined.measurement.iterations, 0);
-  EXPECT_GE(refined.bank.R(0, 0), quantum * quantum / 12.0);
-  EXPECT_LT(refined.bank.R(0, 0), 1.1 * quantum * quantum / 12.0);
+  const Refinement found = refined(recording, truth);
+  EXPECT_GT(found.measurement.starts, 0);
+  EXPECT_GT(found.measurement.iterations, 0);
+  EXPECT_GE(found.bank.R(0, 0), quantum * quantum / 12.0);
+  EXPECT_LT(found.bank.R(0, 0), 1.1 * quantum * quantum / 12.0);
 }
 
 INSTANTIATE_TEST_SUITE_P(Folds, RefineMeasured, testing::Values(1, 3));

@@ -8,6 +8,8 @@
 #include "filter/judge/run/evaluate.hpp"
 #include "filter/judge/run/free_run.hpp"
 #include "filter/step/bank_filter.hpp"
+#include "ident/data/stretch.hpp"
+#include "tests/filter/free_run_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {
@@ -79,10 +81,7 @@ TEST(BankWithTerms, PredictsByItsFunction) {
 TEST(BankWithTerms, FreeRunsFollowTheFunctionAndItsSlope) {
   const Bent bent;
   const Trajectory run = bent.runs(1, 2).runs.front();
-  FreeRunOptions options;
-  options.samples = 5;
-  options.horizon = 20;
-  const FreeRun said = free_run(bent.bank(), run, FilterOptions(), options);
+  const FreeRun said = free_run(bent.bank(), run, {}, test::after(5));
   double x = run.state(0, 4), variance = 0.0;
   for (Index k = 5; k < 25; ++k) {
     variance = bent.slope(x) * bent.slope(x) * variance + bent.sd * bent.sd;
@@ -94,13 +93,9 @@ TEST(BankWithTerms, FreeRunsFollowTheFunctionAndItsSlope) {
 
 TEST(BankWithTerms, SamplePathsHaveTheMeanOfItsMoments) {
   const Bent bent;
-  const Trajectory run = bent.runs(1, 2).runs.front();
-  FreeRunOptions options;
-  options.samples = 5;
-  options.horizon = 10;
-  const FreeRun moments = free_run(bent.bank(), run, FilterOptions(), options);
-  options.paths = 4000;
-  const FreeRun paths = free_run(bent.bank(), run, FilterOptions(), options);
+  const Trajectory run = stretch(bent.runs(1, 2).runs.front(), 0, 15);
+  const FreeRun moments = free_run(bent.bank(), run, {}, test::after(5)),
+                paths = free_run(test::with_paths(bent.bank()), run, {}, test::after(5, 4000));
   for (Index k = 5; k < 15; ++k)
     EXPECT_NEAR(paths.mean(0, k), moments.mean(0, k), 5.0 * moments.deviation(0, k) / 60.0);
 }

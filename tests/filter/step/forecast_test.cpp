@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "filter/judge/run/horizon.hpp"
+#include "filter/step/combined_filter.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 #include "tests/filter/drifting_test_support.hpp"
@@ -21,7 +22,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::Index;
 
-constexpr double two_texts = 1e-10;  // vector kernels and equations differ by rounding errors
+constexpr double two_texts = 1e-10;  // fixed and dynamic sizes differ by rounding errors
 
 struct NamedBank {
   std::string name;
@@ -64,7 +65,7 @@ std::vector<NamedBank> banks() {
   quantised.quantum = VectorXd::Constant(1, 0.05);
   Bank quick = test::example_bank(1, 1, 2);
   quick.dt_s = 1.0;  // gaps consist of several steps
-  return {{"vector registers", test::example_bank(2, 1, 3)},
+  return {{"few states", test::example_bank(2, 1, 3)},
           {"many states", test::example_bank(5, 2, 2)},
           {"one mode", test::single_mode(test::example_bank(3, 2, 2), 1), {FilterVariant::kf}},
           {"the paper's", test::example_bank(2, 1, 3), {FilterVariant::salvi2025}},
@@ -282,6 +283,26 @@ TEST(BankDescription, GivesTheSameBankBack) {
     filter::BankFilter first(installed(bank), options);
     filter::BankFilter second(filter::Bank(installed(bank).description()), options);
     for (Index k = 0; k < 25; ++k) expect_same_bits(take(first, bank, k), take(second, bank, k));
+  }
+}
+
+/// R = 0, so that the covariances of states are those of measurements.
+TEST(CombinedFilter, ForecastsTheMixtureThatItsNextStepPredicts) {
+  const Bank drifting = test::example_drifting(2, 1, 3);
+  Bank bank = test::example_bank(2, 1, 3);
+  bank.R.setZero();
+  std::vector<BankFilter> both;
+  both.emplace_back(bank, FilterOptions{});
+  both.emplace_back(drifting, FilterOptions{});
+  CombinedFilter filter(std::move(both), {0.3, 0.7});
+  EXPECT_TRUE(filter.forecast(MatrixXd::Zero(1, 2), 2)[1].state.array().isNaN().all());
+  const Trajectory run = test::simulate_drifting(drifting, 40, 1);
+  for (Index k = 0; k < run.samples(); ++k) {
+    const StateForecast said = filter.forecast(run.input.col(k), 1).front();
+    const FilterEstimate& next = filter.step(run.time_s(k), run.input.col(k), run.state.col(k));
+    if (k <= 3) continue;  // until all have started
+    EXPECT_TRUE(test::near(said.state, next.prediction, 1e-12)) << k;
+    EXPECT_TRUE(test::near(said.covariance, next.innovation_covariance, 1e-12)) << k;
   }
 }
 

@@ -88,7 +88,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
         SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
         const Bank bank = bank_of(n, K > 4 ? 4 : K, r);
         Bank more = bank;
-        if (K > 4) {  // more modes than fit into a register
+        if (K > 4) {
           for (Index j = 4; j < K; ++j) {
             more.modes.push_back(bank.modes[static_cast<std::size_t>(j % 4)]);
             more.modes.back().model.A *= 0.8 + 0.02 * static_cast<double>(j);
@@ -100,8 +100,7 @@ TEST(LikelihoodGradient, IsThatOfEverySize) {
       }
 }
 
-/// Sizes without vector kernels. Banks of a single mode never have vector kernels.
-TEST(LikelihoodGradient, IsThatOfSizesWithoutKernels) {
+TEST(LikelihoodGradient, IsThatOfOneModeAndOfManyStates) {
   for (const auto& [n, K] : {std::pair<Index, Index>{1, 1}, {2, 1}, {4, 1}, {4, 2}, {5, 3}}) {
     SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K);
     const Bank bank = bank_of(n, K, 1e-3);
@@ -131,7 +130,7 @@ TEST(LikelihoodGradient, IsThatOfRunsWithGaps) {
   expect_gradient(bank, run, {});
 }
 
-TEST(LikelihoodGradient, IsNotThereWhereStepsHaveNoKernel) {
+TEST(LikelihoodGradient, IsNotThereWhereTransitionsDependOnTheState) {
   Bank logit = bank_of(1, 2, 1e-3);
   logit.transition_logit = {Eigen::MatrixXd::Ones(2, 3), Eigen::VectorXd::Zero(3)};
   EXPECT_FALSE(has_likelihood_gradient(logit, {}));

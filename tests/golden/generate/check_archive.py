@@ -309,9 +309,8 @@ def check_evaluation(file):
     expect("combination weight", combination["weight"], np.array([0.75, 0.25]))
     free = file["evaluation/free_run"]
     expect("free run columns", free.dtype.names,
-           ("filter", "role", "run", "method", "start", "samples", "log_score", "rmse", "nrmse", "fit", "coverage_50", "coverage_90", "coverage_95",
+           ("filter", "role", "run", "start", "samples", "log_score", "rmse", "nrmse", "fit", "coverage_50", "coverage_90", "coverage_95",
             "coverage_99", "lost_paths"))
-    expect("free run method", free["method"], np.array([b"paths"] * 4))
     expect("free run fit", free["fit"], np.array([[66.0 + 1.0 / 3.0, 67.0 + 1.0 / 3.0]] * 4))
     diagnostics = file["evaluation/diagnostics"]
     expect("diagnostics verdict", diagnostics["verdict"], np.array([b"overconfident"] * 4))

@@ -135,7 +135,7 @@ void list(Listing& to, const SummaryRow& r) {
   to(r.too_close, r.pit_distance, r.whiteness_p, r.coverage_50, r.coverage_90, r.coverage_95, r.coverage_99);
 }
 void list(Listing& to, const FreeRunRow& r) {
-  to(r.filter, r.role, r.run, r.method, r.start, r.samples, r.log_score, r.rmse, r.nrmse, r.fit, r.lost_paths);
+  to(r.filter, r.role, r.run, r.start, r.samples, r.log_score, r.rmse, r.nrmse, r.fit, r.lost_paths);
   to(r.coverage_50, r.coverage_90, r.coverage_95, r.coverage_99);
 }
 void list(Listing& to, const HorizonRow& r) {

@@ -56,7 +56,6 @@ FreeRunRow make_free_run_row(const std::string& filter, Index n) {
   return {filter,
           Role::test,
           "*",
-          FreeRunMethod::paths,
           8,
           18,
           1.5,
