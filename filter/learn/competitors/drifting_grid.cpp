@@ -3,13 +3,14 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numeric>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
 #include "filter/learn/competitors/drifting.hpp"
-#include "filter/learn/competitors/drifting_lanes.hpp"
 #include "filter/step/drifting_filter.hpp"
 #include "filter/step/feed/run_samples.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 
@@ -71,16 +72,70 @@ DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<Tra
   return trace;
 }
 
+/// Running variances of all (lam, floor) of a grid (floor runs fastest), in units of v0, and sums of log densities for
+/// all nu.
+class GridDensities {
+ public:
+  explicit GridDensities(const DriftingGrid& grid)
+      : floors_(std::ssize(grid.floor)),
+        floor_(std::ssize(grid.lam) * floors_),
+        keep_(floor_.size()),
+        v_(floor_.size()),
+        square_(floor_.size()),
+        log_variance_(Eigen::ArrayXd::Zero(floor_.size())),
+        tail_(Eigen::ArrayXXd::Zero(floor_.size(), std::ssize(grid.nu))) {
+    for (Index i = 0; i < floor_.size(); ++i) {
+      floor_(i) = grid.floor[static_cast<std::size_t>(i % floors_)];
+      keep_(i) = grid.lam[static_cast<std::size_t>(i / floors_)];
+    }
+    for (const double nu : grid.nu) noise_.emplace_back(nu);
+  }
+
+  /// Processes e^2 / (1 + h'Ph) of one signal from a start on.
+  void follow(std::span<const double> ratios) {
+    v_.setOnes();
+    for (const double ratio : ratios) {
+      square_ = ratio / v_;
+      log_variance_ += v_.log();
+      for (std::size_t d = 0; d < noise_.size(); ++d)
+        if (noise_[d].gaussian())
+          tail_.col(static_cast<Index>(d)) += square_;
+        else
+          tail_.col(static_cast<Index>(d)) += (1.0 + square_ / (noise_[d].degrees() - 2.0)).log();
+      v_ = (keep_ * v_ + (1.0 - keep_) * ratio).max(floor_);
+    }
+    signals_ += static_cast<double>(ratios.size());
+  }
+
+  /// The sums in the grid's order (lam, nu, floor), without half of log v0 and of log (1 + h'Ph).
+  void write(Eigen::Ref<Eigen::VectorXd> out) const {
+    for (std::size_t d = 0; d < noise_.size(); ++d) {
+      const double weight = noise_[d].gaussian() ? 0.5 : 0.5 * (noise_[d].degrees() + 1.0);
+      const Eigen::ArrayXd sum =
+          signals_ * noise_[d].log_constant() - 0.5 * log_variance_ - weight * tail_.col(static_cast<Index>(d));
+      for (Index i = 0; i < sum.size(); ++i)
+        out((i / floors_ * std::ssize(noise_) + static_cast<Index>(d)) * floors_ + i % floors_) = sum(i);
+    }
+  }
+
+ private:
+  Index floors_;
+  Eigen::ArrayXd floor_, keep_, v_, square_, log_variance_;
+  Eigen::ArrayXXd tail_;  ///< per nu: sums of log (1 + z^2 / (nu - 2)); of z^2 for the normal distribution
+  std::vector<StudentNoise> noise_;
+  double signals_ = 0.0;
+};
+
 /// Sums of log densities for all (lam, nu, floor).
 void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<Eigen::VectorXd> sums) {
-  DriftingLanes lanes(grid);
+  GridDensities densities(grid);
   for (std::size_t i = 0; i < trace.ratio.size(); ++i)
     for (std::size_t s = 0; s < trace.start[i].size(); ++s) {
       const std::size_t from = trace.start[i][s];
       const std::size_t to = s + 1 < trace.start[i].size() ? trace.start[i][s + 1] : trace.ratio[i].size();
-      lanes.follow(trace.ratio[i].data() + from, to - from);
+      densities.follow(std::span(trace.ratio[i]).subspan(from, to - from));
     }
-  lanes.write(sums);
+  densities.write(sums);
   sums.array() -= 0.5 * trace.log_variance;
 }
 
