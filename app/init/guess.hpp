@@ -34,21 +34,16 @@ struct ChannelLeft {
   int points = 0;  ///< hints that it acts or is measured; 0 for clocks, counters, labels and text
 };
 
-/// A sentence for people to check. Whoever states one of the [data] keys in `keys` ("state", "time rate_hz") settles
-/// it.
-struct Doubt {
-  std::string text, keys;
-  bool operator==(const Doubt&) const = default;
-};
-
 struct Guess {
   std::vector<ChannelPlace> states, inputs;
   std::optional<Mounting> mounting;
-  std::vector<Doubt> reasons;  ///< sentences for the configuration's comments
+  std::vector<std::string> reasons;  ///< sentences for the configuration's comments
 };
 
 /// Guesses states and inputs from names, units, movement and position. Each hint has a weight. Throws DataError if no
-/// channel moves.
+/// channel moves, or if the states and inputs, or the rows of their table, do not belong together: one of many
+/// recordings in a file, another robot's input, signals in one column, each signal with its own times, or vectors in
+/// one cell. Such a message has the key that decides, or lines of Python that make a table.
 Guess guess_roles(const std::vector<SurveyedFile>& files);
 
 /// Moving channels that are not in `guess`, each with the reason, in the order of the files.

@@ -45,10 +45,9 @@ json init_json(const std::vector<SurveyedFile>& surveyed, const Proposal& propos
   }
   for (const ProposedKey& key : proposal.keys)
     keys.push_back({{"key", "data." + key.key}, {"value", key.value}, {"why", key.why}});
-  json left = json::array(), doubts = json::array();
-  for (const Doubt& doubt : proposal.doubts) doubts.push_back(doubt.text);
+  json left = json::array();
   for (const ChannelLeft& channel : proposal.left) left.push_back({{"name", channel.name}, {"reason", channel.reason}});
-  return {{"files", files}, {"keys", keys}, {"doubts", doubts}, {"not_taken", left}};
+  return {{"files", files}, {"keys", keys}, {"doubts", proposal.doubts}, {"not_taken", left}};
 }
 
 }  // namespace modebank::app

@@ -10,7 +10,6 @@
 #include <utility>
 
 #include "app/init/proposed_times.hpp"
-#include "app/init/together.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/natural_order.hpp"
@@ -40,22 +39,6 @@ std::string short_name(const std::string& name) {
   if (from != std::string::npos && from > 0) from = name.find_last_of("./", from - 1);
   const std::string result = letters_and_digits(name.substr(from == std::string::npos ? 0 : from + 1));
   return result.empty() || is_digit(result.front()) ? "channel_" + result : result;
-}
-
-/// The period of values that wrap: 360, 2 pi or a power of two. They fill it, jump by nearly all of it now and then,
-/// and move little otherwise. 0 for other values.
-double wrap_period(const SurveyedChannel& channel) {
-  constexpr double jump = 0.8, step = 0.2;
-  std::vector<double> periods{360.0, 2.0 * EIGEN_PI};
-  for (int bits = 8; bits <= 32; ++bits) periods.push_back(std::ldexp(1.0, bits));
-  const Eigen::Index rest = channel.values.size() - 1;
-  const Eigen::ArrayXd steps = (channel.values.tail(rest) - channel.values.head(rest)).array().abs();
-  const double range = channel.check.largest - channel.check.least;
-  for (const double period : periods)
-    if (range > 0.9 * period && range < 1.001 * period && (steps > jump * period).any() &&
-        ((steps > jump * period) || (steps < step * period) || !steps.isFinite()).all())
-      return period;
-  return 0.0;
 }
 
 /// Builds the proposed configuration from the survey.
@@ -92,37 +75,47 @@ class Proposer {
   void add(std::string key, std::string value, std::string why = {}) {
     proposal_.add(std::move(key), std::move(value), std::move(why));
   }
-  void doubt(const std::string& text, const std::string& keys = {}) { proposal_.doubt(text, keys); }
+  void doubt(const std::string& text) { proposal_.doubt(text); }
 
   /// Names the channels that move and are not taken, those first that may act.
   void not_taken() {
-    constexpr std::size_t named = 6;
-    proposal_.left = channels_left(surveyed_, guess_);
-    std::vector<ChannelLeft> moving = proposal_.left;
-    std::erase_if(moving, [](const ChannelLeft& channel) { return channel.points == 0; });
-    if (moving.empty()) return;
-    std::stable_sort(moving.begin(), moving.end(), [](const auto& a, const auto& b) { return a.points > b.points; });
+    constexpr std::size_t most = 6;
+    std::vector<ChannelLeft> left = proposal_.left = channels_left(surveyed_, guess_);
+    std::ranges::stable_sort(left, std::greater<>(), &ChannelLeft::points);
     std::vector<std::string> names;
-    for (std::size_t i = 0; i < std::min(named, moving.size()); ++i) names.push_back(moving[i].name);
-    const std::size_t more = moving.size() - names.size();
-    doubt(fmt::format("not taken although moving: {}{} (data.input and data.state take others)", fmt::join(names, ", "),
-                      more > 0 ? fmt::format(" and {} more", more) : ""),
-          "input");
+    for (const ChannelLeft& channel : left)
+      if (channel.points > 0) names.push_back(channel.name);
+    const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
+    names.resize(std::min(most, names.size()));
+    if (!names.empty())
+      doubt(fmt::format("not taken although moving: {}{} (data.input takes others)", fmt::join(names, ", "), more));
   }
 
-  /// Names inputs that often stand at an end of their range, where a limiter acts.
+  /// Names inputs that often stand at an end of their range, where a limiter acts, and states that wrap: they jump by
+  /// nearly all of 360, 2 pi or a power of two.
   void limits() {
     constexpr double often = 0.05;
     for (const ChannelPlace& place : guess_.inputs) {
       const Eigen::ArrayXd values = channel(place).values.array();
       const SaturationLimits limits = saturation_limits({channel(place).values});
-      const Eigen::Index low = (values <= limits.low).count(), high = (values >= limits.high).count();
-      const double share = static_cast<double>(std::max(low, high)) / static_cast<double>(values.size());
-      if (!limits.soft && share > often)
-        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples", channel(place).name,
-                          high >= low ? channel(place).check.largest : channel(place).check.least, 100.0 * share),
-              "input");
+      const double low = (values <= limits.low).cast<double>().mean(),
+                   high = (values >= limits.high).cast<double>().mean();
+      if (!limits.soft && std::max(low, high) > often)
+        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples (data.input)", channel(place).name,
+                          high >= low ? channel(place).check.largest : channel(place).check.least,
+                          100.0 * std::max(low, high)));
     }
+    for (const ChannelPlace& place : guess_.states)
+      for (const double period : std::vector<double>{360.0, 2.0 * EIGEN_PI, 256.0, 1024.0, 4096.0, 65536.0, 0x1p32}) {
+        const Eigen::VectorXd& v = channel(place).values;
+        const Eigen::ArrayXd steps = (v.tail(v.size() - 1) - v.head(v.size() - 1)).array().abs() / period;
+        const double range = channel(place).check.largest - channel(place).check.least;
+        if (range < 1.001 * period && (steps > 0.8).any() && ((steps > 0.8) || !(steps > 0.2)).all())
+          doubt(
+              fmt::format("{0} jumps by {1:.9g}, and its jumps count as motion; state data.derive = turned = "
+                          "unwrap({2} * 2 * pi / {1:.9g}) and data.state = turned",
+                          channel(place).name, period, quoted_channel_name(channel(place).name)));
+      }
   }
 
   std::string runs_text(const FileSet& set, bool listed) const {
@@ -195,7 +188,7 @@ class Proposer {
         m.reversed ? "-" : "+", letter, std::abs(m.gravity), sign, m.up_rate, m.z_rate);
     if (m.z_correlation)
       text += fmt::format(" (correlation with {}: {:.2f} and {:.2f})", m.other, *m.up_correlation, *m.z_correlation);
-    doubt(text, "state");
+    doubt(text + " (data.state)");
     std::vector<std::string> parts;
     for (const SurveyedChannel& c : table(state()).channels)
       for (const Axis axis : {Axis::x, Axis::y, Axis::z})
@@ -223,12 +216,10 @@ class Proposer {
     constexpr std::size_t longest = 24;
     for (const ChannelPlace& place : places) {
       const std::string& name = channel(place).name;
-      const bool is_state = std::count(guess_.states.begin(), guess_.states.end(), place) > 0;
-      const double period = is_state ? wrap_period(channel(place)) : 0.0;
-      if ((name.size() <= longest && !needs_quotes(name) && period == 0.0) || short_names_.count(name) > 0 ||
+      if ((name.size() <= longest && !needs_quotes(name)) || short_names_.count(name) > 0 ||
           (is_yaw_rate(place) && !turned_.empty()))
         continue;
-      std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name) + (period > 0.0 ? "_unwrapped" : "");
+      std::string alias = is_yaw_rate(place) ? "yaw_rate" : short_name(name);
       const auto is_taken = [&](const std::string& candidate) {
         return table(place).find(candidate) != nullptr ||
                std::any_of(short_names_.begin(), short_names_.end(),
@@ -238,12 +229,8 @@ class Proposer {
       const std::string& own = channel(place).unit;
       std::string unit = own.empty() ? usual_unit(name) : own;
       if (unit.find(']') != std::string::npos) unit.clear();  // a ] in a unit would end the bracket around the unit
-      std::string formula = quoted_channel_name(name);
-      if (period > 0.0) {
-        formula = fmt::format("unwrap({} * 2 * pi / {:.12g}) * {:.12g} / (2 * pi)", formula, period, period);
-        doubt(fmt::format("{} jumps by {:.12g} and is taken without these jumps, as {}", name, period, alias), "state");
-      }
-      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", formula), "");
+      add("derive", fmt::format("{}{} = {}", alias, unit.empty() ? "" : " [" + unit + "]", quoted_channel_name(name)),
+          "");
       short_names_[name] = alias;
     }
   }
@@ -277,7 +264,7 @@ class Proposer {
   }
 
   void channels() {
-    for (const Doubt& reason : guess_.reasons) doubt(reason.text, reason.keys);
+    for (const std::string& reason : guess_.reasons) doubt(reason);
     limits();
     shorten(guess_.states);
     shorten(guess_.inputs);
@@ -338,7 +325,7 @@ class Proposer {
     }
     if (sets_[input().file].files.size() > 1) return;
     const FitOptions defaults;
-    const std::string split = proposed_split(table(input()).time_s.size(), defaults.length + defaults.state_lags);
+    const std::string split = proposed_split(table(input()).sampling.samples, defaults.length + defaults.state_lags);
     const bool in_blocks = split.starts_with("blocks");
     add("split", split,
         in_blocks ? "one long run: blocks 1, 3, ... train, the others test" : "one run: its end is held out");
@@ -356,18 +343,8 @@ void Proposal::add(std::string key, std::string value, std::string why) {
   keys.push_back({std::move(key), std::move(value), std::move(why)});
 }
 
-void Proposal::doubt(const std::string& text, const std::string& settled_by) {
-  if (const Doubt said{text, settled_by}; std::count(doubts.begin(), doubts.end(), said) == 0) doubts.push_back(said);
-}
-
-void Proposal::state(const std::string& key, const std::string& value) {
-  std::erase_if(doubts, [&](const Doubt& doubt) {
-    return fmt::format(" {} ", doubt.keys).find(fmt::format(" {} ", key)) != std::string::npos;
-  });
-  const std::string why = "from the command line";
-  if (key == "derive") return add(key, value, why);  // each line makes another channel
-  drop(key + "_unit");
-  set(key, value, why);
+void Proposal::doubt(const std::string& text) {
+  if (std::count(doubts.begin(), doubts.end(), text) == 0) doubts.push_back(text);
 }
 
 void Proposal::drop(const std::string& key) {
@@ -381,7 +358,6 @@ void Proposal::set(const std::string& key, const std::string& value, const std::
 
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder) {
-  refuse_what_is_apart(surveyed, guess);
   return Proposer(sets, surveyed, guess).propose(config_folder);
 }
 

@@ -16,15 +16,12 @@ struct ProposedKey {
 /// The proposed [data] section, key by key.
 struct Proposal {
   std::vector<ProposedKey> keys;
-  std::vector<Doubt> doubts;      ///< points that users should check first
-  std::vector<ChannelLeft> left;  ///< moving channels that are not used
+  std::vector<std::string> doubts;  ///< points that users should check first; stating a key that one names settles it
+  std::vector<ChannelLeft> left;    ///< moving channels that are not used
 
   const ProposedKey* find(const std::string& key) const;
   void add(std::string key, std::string value, std::string why = {});
-  /// Adds a doubt, unless it was added before.
-  void doubt(const std::string& text, const std::string& settled_by = {});
-  /// Takes a key that the user states, in place of the proposed one, and drops the doubts that it settles.
-  void state(const std::string& key, const std::string& value);
+  void doubt(const std::string& text);  ///< adds a doubt, unless it was added before
   void drop(const std::string& key);
   void set(const std::string& key, const std::string& value, const std::string& why);
 };

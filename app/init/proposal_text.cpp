@@ -35,7 +35,7 @@ std::string configuration_text(const Proposal& proposal, const std::string& comm
   const std::string shown =
       command.size() > longest ? command.substr(0, command.rfind(' ', longest)) + " ..." : command;
   std::string text = fmt::format("# Written by {}. Check the lines below before you use it.\n", printable_name(shown));
-  for (const Doubt& doubt : proposal.doubts) text += fmt::format("# ! {}\n", printable_name(doubt.text));
+  for (const std::string& doubt : proposal.doubts) text += fmt::format("# ! {}\n", printable_name(doubt));
   text += "\n[data]\n";
   for (const ProposedKey& key : proposal.keys) {
     if (key.value.empty()) {

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
-#include <set>
 
 #include "app/init/why_text.hpp"
 #include "app/init/words.hpp"
@@ -39,15 +38,18 @@ class TableSurvey {
         channel.counts = counts_up(channel.values);
       } else {
         channel.type = "text";
-        if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i])) take_texts(*texts, channel);
+        if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]))
+          channel.why_text = why_no_numbers(*texts);
       }
       if (auto* const numbers = std::get_if<std::vector<double>>(&columns_[i])) *numbers = {};
     }
     find_time(table);
     leave_out_unset(table);
     find_run(table);
-    follow_restarts(table);
-    table.sampling = check_sampling(one_run(table));
+    const Eigen::VectorXd stamps_s = table.time_s.array() + 1e-9 * static_cast<double>(table.origin_ns);
+    const std::vector<double> times(stamps_s.begin(), stamps_s.end());
+    const bool runs = !table.run.empty() || !clock_restarts(times, table.time_notes).empty();
+    table.sampling = check_sampling(one_run(table, runs));
     for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
     return table;
   }
@@ -58,14 +60,6 @@ class TableSurvey {
   const TableInfo& info_;
   std::vector<FileColumn>& columns_;
   std::string time_problem_;
-
-  static void take_texts(const std::vector<std::string>& texts, SurveyedChannel& channel) {
-    channel.why_text = why_no_numbers(texts);
-    std::size_t changes = 0;
-    for (std::size_t k = 1; k < texts.size(); ++k) changes += texts[k] != texts[k - 1];
-    const std::set<std::string> words(texts.begin(), texts.end());
-    channel.alternates = words.size() > 1 && 10 * words.size() < texts.size() && 2 * changes > texts.size();
-  }
 
   /// The stamps of a column in seconds.
   static Eigen::VectorXd numbers_of(const FileColumn& column) {
@@ -109,7 +103,8 @@ class TableSurvey {
       const SurveyedChannel& channel = table.channels[i];
       if (channel.type == "time" && !channel.name.ends_with("receive_time")) typed.push_back({channel.name});
       const SurveyedChannel* const next = i + 1 < table.channels.size() ? &table.channels[i + 1] : nullptr;
-      const bool pair = next != nullptr && is_since_1970(channel.values) && is_below_a_second(*next);
+      const bool pair = next != nullptr && channel.counts && channel.check.least > 9e8 && channel.check.largest < 4e9 &&
+                        next->check.largest > 5e8 && next->check.largest < 1e9;  // seconds since 1970 and nanoseconds
       if (!names_time(channel.name) && !pair) continue;
       if (pair || (next != nullptr && names_nanoseconds(next->name)))
         named.insert(named.begin(), {channel.name, next->name});
@@ -186,39 +181,28 @@ class TableSurvey {
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
-  /// Whole seconds since 1970 that never fall, and nanoseconds below a second.
-  static bool is_since_1970(const Eigen::VectorXd& v) {
-    return v.size() > 1 && v.minCoeff() > 9e8 && v.maxCoeff() < 4.3e9 && v == v.array().round().matrix() &&
-           (v.tail(v.size() - 1).array() >= v.head(v.size() - 1).array()).all();
-  }
-  static bool is_below_a_second(const SurveyedChannel& c) {
-    return c.is_number() && c.check.least >= 0.0 && c.check.largest > 5e8 && c.check.largest < 1e9;
-  }
-
-  /// Whether values are a clock or a counter: they increase evenly, also where some are missing or whole numbers are
-  /// held, or they are seconds since 1970.
-  static bool counts_up(const Eigen::VectorXd& all) {
-    std::vector<double> v, rises;
-    for (const double value : all)
-      if (std::isfinite(value)) v.push_back(value);
+  /// Whether values are a clock or a counter: they rise evenly, or in steps of one, or are seconds since 1970. A run
+  /// may start again, and values may be missing.
+  static bool counts_up(Eigen::VectorXd v) {
+    constexpr double fewest = 10.0;
+    v.conservativeResize(std::remove_if(v.begin(), v.end(), [](double x) { return std::isnan(x); }) - v.begin());
     if (v.size() < 2) return false;
-    const auto known = Eigen::VectorXd::Map(v.data(), std::ssize(v));
-    if (rises_evenly(known) || is_since_1970(known)) return true;
-    for (std::size_t k = 1; k < v.size(); ++k) {
-      const bool rises_by_one = v[k] == v[k - 1] + 1.0;
-      if (!rises_by_one && v[k] != v[k - 1] && v[k] != v[0]) return false;  // a run may start again
-      if (rises_by_one) rises.push_back(static_cast<double>(k));
-    }
-    return rises_evenly(Eigen::VectorXd::Map(rises.data(), std::ssize(rises)));
+    if (rises_evenly(v)) return true;
+    const bool since_1970 = v(0) > 9e8 && v == v.array().round().matrix();
+    for (Eigen::Index k = 1; k < v.size(); ++k)
+      if (v(k) != v(k - 1) && v(k) != v(0) && !(v(k) == v(k - 1) + 1.0 || (since_1970 && v(k) > v(k - 1))))
+        return false;
+    return v.tail(1)(0) - v(0) >= (since_1970 ? 1.0 : fewest);
   }
 
-  /// Whether the value changes only where the column that separates runs changes.
+  /// Whether the value changes only where the column that separates runs changes, or in the last row, as a mark of the
+  /// end does.
   static bool rests_in_runs(const Eigen::VectorXd& values, const SurveyedTable& table) {
     const SurveyedChannel* const run = table.run.empty() ? nullptr : table.find(table.run);
-    for (Eigen::Index k = 0, last = 0; k < values.size(); ++k) {
-      if (!std::isfinite(values(k))) continue;
-      const bool same_run = run == nullptr || !run->is_number() || run->values(k) == run->values(last);
-      if (same_run && std::isfinite(values(last)) && values(k) != values(last)) return false;
+    for (Eigen::Index k = 1, last = 0; k + 1 < values.size(); ++k) {
+      if (std::isnan(values(k))) continue;
+      const bool changes = values(k) != values(last) && !std::isnan(values(last));
+      if (changes && (run == nullptr || !run->is_number() || run->values(k) == run->values(last))) return false;
       last = k;
     }
     return true;
@@ -277,16 +261,6 @@ class TableSurvey {
     return true;
   }
 
-  /// Does what import does where the clock starts again.
-  static void follow_restarts(SurveyedTable& table) {
-    if (!table.run.empty() || !table.time_s.allFinite()) return;
-    std::vector<std::int64_t> stamps;
-    for (const double time_s : table.time_s) stamps.push_back(table.origin_ns + std::llround(1e9 * time_s));
-    if (std::string note = count_on_restarts(stamps); !note.empty()) table.time_notes.push_back(std::move(note));
-    for (std::size_t k = 0; k < stamps.size(); ++k)
-      table.time_s(static_cast<Eigen::Index>(k)) = static_cast<double>(stamps[k] - table.origin_ns) / 1e9;
-  }
-
   static void leave_out_unset(SurveyedTable& table) {
     const auto kept = table.time_s.size() - static_cast<Eigen::Index>(table.unset_rows);
     table.time_s = table.time_s.tail(kept).eval();
@@ -339,9 +313,9 @@ class TableSurvey {
   }
 
   /// The rows before the first jump back in time.
-  static Stream one_run(const SurveyedTable& table) {
+  static Stream one_run(const SurveyedTable& table, bool runs) {
     Eigen::Index end = std::min<Eigen::Index>(1, table.time_s.size());
-    while (end < table.time_s.size() && !(!table.run.empty() && jumps_back(table.time_s, end))) ++end;
+    while (end < table.time_s.size() && !(runs && jumps_back(table.time_s, end))) ++end;
     Stream stream{table.time_s.head(end), Eigen::MatrixXd(0, end)};
     std::vector<const SurveyedChannel*> moving;
     for (const SurveyedChannel& channel : table.channels)
@@ -369,19 +343,14 @@ SurveyedFile survey_file(const std::filesystem::path& path) {
   const std::vector<TableInfo> tables = reader->tables();
   FileColumns columns = read_columns(*reader, tables, [](const TableInfo& table, const ColumnInfo& column) {
     const std::string named = column.name.substr(0, column.name.find('[')) + "{";  // velocity{left} names velocity[0]
-    const bool has_name = std::any_of(table.columns.begin(), table.columns.end(),
-                                      [&](const ColumnInfo& other) { return other.name.starts_with(named); });
-    return column.type != "text" && !has_name;  // text columns are not surveyed further
+    const auto names = [&](const ColumnInfo& other) { return other.name.starts_with(named); };
+    return column.type != "text" && std::ranges::none_of(table.columns, names);  // text is not surveyed further
   });
   file.notes = std::move(columns.notes);
   for (std::string& line : reader->left_out()) file.notes.push_back(std::move(line));
-  std::uint64_t longest = 0;
-  for (const TableInfo& table : tables) {
-    file.skipped = static_cast<std::size_t>(table.skipped);
-    longest = std::max<std::uint64_t>(longest, table.rows);
-  }
+  for (const TableInfo& table : tables) file.skipped = static_cast<std::size_t>(table.skipped);
   for (std::size_t i = 0; i < tables.size(); ++i)
-    if (tables[i].type.empty() && 100 * tables[i].rows < longest)
+    if (tables[i].type.empty() && tables[i].rows < 10 && tables.size() > 1)
       continue;  // such as the sizes of the arrays beside them
     else if (columns.alternation[i].empty())
       file.tables.push_back(TableSurvey(*reader, i, tables[i], columns.tables[i]).look());

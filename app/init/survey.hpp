@@ -17,13 +17,12 @@ struct SurveyedChannel {
   std::string name, unit, type;
   ChannelCheck check = {};
   Eigen::VectorXd values = {};  ///< one per row, NaN if missing; empty for a text column
-  bool alternates = false;      ///< for a text column: whether a few words take turns from row to row
   std::string why_text = {};    ///< for a text column that changes: the first value that is not a number
   bool counts = false;          ///< whether the values increase as clocks and counters do
-  bool rests = false;           ///< whether the value is constant in every run
+  bool rests = false;           ///< whether the value is constant in every run, so that it explains nothing in one
 
   bool is_number() const { return values.size() > 0; }
-  bool moves() const { return is_number() && check.largest > check.least; }
+  bool moves() const { return is_number() && check.largest > check.least && !rests; }
 };
 
 /// One table of a file, with its times as data.time and data.run would read them.

@@ -36,7 +36,7 @@ Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
   if (channel.check.repeated > most_repeated && channel.moves())
     notes += fmt::format("  {:.0f} % repeated", 100.0 * channel.check.repeated);
-  const std::string range = channel.moves()
+  const std::string range = channel.check.largest > channel.check.least
                                 ? fmt::format("{:.5g} to {:.5g}", channel.check.least, channel.check.largest)
                                 : fmt::format("constant {:.5g}", channel.check.least);
   return {name, channel.unit, range + notes};

@@ -86,11 +86,10 @@ void replace_unreachable_commands(const std::vector<SurveyedFile>& files, Guess&
   }
   if (!beyond) return;
   guess.inputs = std::move(places);
-  guess.reasons.push_back({fmt::format("{0} reach {1:.3g}, but {2} never exceed {3:.3g}: many commands are not "
-                                       "followed, so the measured values are the "
-                                       "inputs; the commands would be input = {0}",
-                                       fmt::join(commands, ", "), commanded, fmt::join(measured, ", "), reached),
-                           "input"});
+  guess.reasons.push_back(fmt::format(
+      "{0} reach {1:.3g}, but {2} never exceed {3:.3g}: many commands are not followed, so the measured values are the "
+      "inputs; the commands would be data.input = {0}",
+      fmt::join(commands, ", "), commanded, fmt::join(measured, ", "), reached));
 }
 
 }  // namespace modebank::app

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <set>
+
 #include "ident/base/printable.hpp"
 #include "io/csv/csv_number.hpp"
 
@@ -9,16 +11,17 @@ namespace modebank::app {
 
 std::string why_no_numbers(const std::vector<std::string>& texts) {
   const std::string *like_number = nullptr, *first = nullptr;
-  bool numbers = false, changes = false;
+  bool numbers = false;
+  std::size_t changes = 0;
   for (const std::string& text : texts) {
     const NumberStatus status = parse_number(text).status;
     numbers = numbers || status == NumberStatus::ok;
-    changes = changes || text != texts.front();
+    changes += &text != &texts.front() && text != *(&text - 1) ? 1 : 0;
     if (status != NumberStatus::text) continue;
     if (first == nullptr) first = &text;
     if (like_number == nullptr && text.find_first_of("0123456789") < 2) like_number = &text;
   }
-  if (first == nullptr || !changes) return "";
+  if (first == nullptr || changes == 0) return "";
   const std::string& text = like_number != nullptr ? *like_number : *first;
   constexpr std::size_t longest = 30;
   const MarkShown mark = like_number != nullptr ? mark_shown(text) : MarkShown::none;
@@ -28,6 +31,8 @@ std::string why_no_numbers(const std::vector<std::string>& texts) {
     hint = fmt::format(": other numbers have a decimal {} (data.decimal)", comma ? "point" : "comma");
   else if (numbers)
     hint = ", although other values are (data.na lists words for missing values)";
+  else if (2 * changes > texts.size() && 10 * std::set(texts.begin(), texts.end()).size() < texts.size())
+    hint = changing_text;
   return fmt::format("\"{}\" is not a number{}", printable_name(text.substr(0, longest)), hint);
 }
 

@@ -66,25 +66,26 @@ constexpr std::array acting_tables{
     Word{" odometry ", 2}, Word{" joint ", 2},   Word{" wheel ", 4},    Word{" encoder ", 4}, Word{" encoders ", 4}};
 
 constexpr std::array ignored_words{
-    " covariance ", " seq ",       " frame id ",  " status ",       " stamp ",     " secs ",        " nsecs ",
-    " sec ",        " nanosec ",   " timestamp ", " receive time ", " row ",       " index ",       " done ",
-    " latitude ",   " longitude ", " checksum ",  " lat ",          " lon ",       " crc ",         " label ",
-    " mode ",       " qx ",        " qy ",        " qz ",           " qw ",        " orientation ", " step ",
-    " count ",      " counter ",   " steady ",    " window ",       " friction ",  " ground ",      " true ",
-    " truth ",      " gt ",        " vicon ",     " mocap ",        " optitrack ", " icp ",         " flag ",
-    " jump ",       " header ",    " terminals ", " terminated ",   " truncated ", " timeout ",     " timeouts ",
+    " covariance ", " seq ",       " frame id ",     " status ", " stamp ", " secs ",    " nsecs ",    " sec ",
+    " nanosec ",    " timestamp ", " receive time ", " row ",    " index ", " done ",    " latitude ", " longitude ",
+    " checksum ",   " lat ",       " lon ",          " crc ",    " label ", " mode ",    " qx ",       " qy ",
+    " qz ",         " qw ",        " orientation ",  " step ",   " count ", " counter ", " steady ",   " window ",
+    " friction ",   " ground ",    " true ",         " truth ",  " gt ",    " vicon ",   " mocap ",    " optitrack ",
+    " icp ",        " flag ",      " jump ",         " header ",
 };
 /// An id that is not the last word belongs to the name of a matrix: resultID[0].
-constexpr std::array ignored_endings{" id ", " terminal "};
+constexpr std::array ignored_endings{" id ",        " terminal ", " terminals ", " terminated ",
+                                     " truncated ", " timeout ",  " timeouts "};
 
 constexpr std::array time_names{" time ",      " t ",       " stamp ",   " timestamp ",     " tout ",
                                 " secs ",      " seconds ", " sec ",     " sampling time ", " zeit ",
                                 " clock ",     " time s ",  " t s ",     " header stamp ",  " time ns ",
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
-                                " date time ", " date ",    " elapsed ", " uptime ",        " timestamps "};
+                                " date time ", " date ",    " elapsed ", " uptime ",        " timestamps ",
+                                " micros ",    " millis "};
 constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
-                               " segment ", " sequence ", " file ",  " session ", " lap "};
+                               " segment ", " sequence ", " file ",  " session ", " lap ",     " demo "};
 constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
                                      " target ",   " reference ", " ref "};
 
@@ -140,17 +141,16 @@ NameScore score_name(std::string_view name, std::string_view type) {
   score.ignored = any_of(ignored_words, words) || ends_with_any(ignored_endings, words) || names_time(name) ||
                   names_nanoseconds(name);
   score.state = best(state_words, words);
-  score.input = name == "U" ? 0 : words == " i " ? 4 : best(input_words, words);  // U is often a constant speed
+  const bool acts = name != "U" && name.find("batt") == std::string_view::npos;  // U is often a constant speed
+  score.input = words == " i " ? 4 : acts ? best(input_words, words) : 0;
   if (score.state > 0) score.state += std::max(best(measuring_tables, words), best(measuring_tables, kind));
-  if (score.input > 0) score.input += std::max(best(acting_tables, words), best(acting_tables, kind));
+  if (const int table = std::max(best(acting_tables, words), best(acting_tables, kind)); score.input > 0 || table > 4)
+    score.input += table;                  // the channels of a command act, whatever their names
   if (score.input >= 10) score.state = 0;  // a command, even if the quantity is usually measured
   return score;
 }
 
-bool names_time(std::string_view name) {
-  const std::string words = words_of_name(name);
-  return ends_with_any(time_names, words) || words == " micros " || words == " millis ";
-}
+bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
 bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 

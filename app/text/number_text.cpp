@@ -64,11 +64,8 @@ std::string rate_text(double per_second) {
 }
 
 std::string time_unit(const std::map<std::string, std::string>& settings) {
-  const auto is = [&](const char* key, const char* value) {
-    const auto found = settings.find(key);
-    return found != settings.end() && found->second == value;
-  };
-  return is("data.time", "") && is("data.rate_hz", "1") ? "samples" : "s";
+  const auto time = settings.find("data.time"), rate = settings.find("data.rate_hz"), none = settings.end();
+  return time != none && time->second.empty() && rate != none && rate->second == "1" ? "samples" : "s";
 }
 
 }  // namespace modebank::app

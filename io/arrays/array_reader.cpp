@@ -110,11 +110,11 @@ class ArrayReader : public TableReader {
   std::vector<double> values_of(std::size_t column) const {
     const StoredColumn& stored = store_->columns()[column];
     std::vector<double> values(static_cast<std::size_t>(stored.rows));
-    if (!(stored.step_s > 0.0)) values = store_->numbers(column);
-    const auto [scale, offset, fill] = stored.packing;
-    for (double& value : values)
-      if (stored.packed) value = value == fill ? not_a_number : scale * value + offset;
-    if (!(stored.step_s > 0.0)) return values;
+    if (!(stored.step_s > 0.0)) {
+      values = store_->numbers(column);
+      for (double& value : values) value = value == stored.fill ? not_a_number : stored.scale * value + stored.offset;
+      return values;
+    }
     for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<double>(k) * stored.step_s;
     return values;
   }

@@ -51,13 +51,11 @@ std::string hdf5_text_attribute(hid_t object, const std::string& name) {
   return text;
 }
 
-std::optional<double> hdf5_number_attribute(hid_t object, const std::string& name) {
-  if (!hdf5::has_attribute(object, name)) return {};
+double hdf5_number_attribute(hid_t object, const std::string& name, double otherwise) {
+  if (!hdf5::has_attribute(object, name)) return otherwise;
   const hdf5::StoredArray attribute(object, hdf5::Place::attribute, name);
-  if (attribute.elements() != 1 || !hdf5_is_number(attribute.type())) return {};
-  double value = 0.0;
-  attribute.read(H5T_NATIVE_DOUBLE, &value);
-  return value;
+  if (attribute.elements() == 1 && hdf5_is_number(attribute.type())) attribute.read(H5T_NATIVE_DOUBLE, &otherwise);
+  return otherwise;
 }
 
 std::string hdf5_unit(hid_t object) {
@@ -180,8 +178,7 @@ std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_
   hdf5::check(H5Dget_num_chunks(dataset, space.id(), &written), "count its chunks");
   std::vector<LineRange> ranges;
   if (written >= all) return ranges;
-  for (std::size_t d = 0; d < shape.size(); ++d)
-    if (d != along && shape[d] > 1) offset[d] = across / chunk[d] * chunk[d];
+  if (shape.size() == 2) offset[1 - along] = across / chunk[1 - along] * chunk[1 - along];
   for (hsize_t row = 0; row < shape[along]; row += chunk[along]) {
     offset[along] = row;
     unsigned mask = 0;

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -14,8 +13,8 @@ haddr_t hdf5_address(hid_t object);
 std::string hdf5_path(hid_t object);
 /// A text attribute of fixed length. Empty if the attribute does not exist or has another type.
 std::string hdf5_text_attribute(hid_t object, const std::string& name);
-/// An attribute that is one number. Nullopt if the attribute does not exist or is anything else.
-std::optional<double> hdf5_number_attribute(hid_t object, const std::string& name);
+/// An attribute that is one number. `otherwise` if the attribute does not exist or is anything else.
+double hdf5_number_attribute(hid_t object, const std::string& name, double otherwise);
 /// Value of the attribute `units`, `unit` or `Units`.
 std::string hdf5_unit(hid_t object);
 hdf5::Shape hdf5_shape(hid_t dataset);
@@ -42,7 +41,7 @@ bool hdf5_lies_outside(hid_t dataset);
 void hdf5_read(hid_t dataset, hid_t memory_type, hid_t memory_space, hid_t file_space, void* to);
 
 /// Rows (counted from 1) of one line of a dataset, in chunks that were never written. HDF5 returns the fill value for
-/// these rows. At most two dimensions are longer than one.
+/// these rows. The dataset has one or two dimensions.
 std::vector<LineRange> hdf5_unwritten_lines(hid_t dataset, hsize_t along, hsize_t across);
 
 /// The type of a member of a compound. `member` lists the names of the nested compounds and the member. If the list is
@@ -51,18 +50,17 @@ hdf5::Handle hdf5_member_type(hid_t compound, const std::vector<std::string>& me
 /// An in-memory type of rows that contain only this member, with the type `cell`.
 hdf5::Handle hdf5_only_member(const std::vector<std::string>& member, hdf5::Handle cell);
 
-/// One line of a dataset. At most two of its dimensions are longer than one.
+/// One line of a dataset of one or two dimensions.
 template <class T>
 std::vector<T> hdf5_read_line(hid_t dataset, hsize_t along, hsize_t line, hid_t memory, std::size_t rows) {
   std::vector<T> values(rows);
   const hdf5::Handle space(H5Dget_space(dataset), H5Sclose, "read a shape");
   const hdf5::Shape shape = hdf5_shape(dataset);
   hdf5::Shape start(shape.size(), 0), count = shape;
-  for (std::size_t d = 0; d < shape.size(); ++d)
-    if (d != along && shape[d] > 1) {
-      start[d] = line;
-      count[d] = 1;
-    }
+  if (shape.size() == 2) {
+    start[1 - along] = line;
+    count[1 - along] = 1;
+  }
   hdf5::check(H5Sselect_hyperslab(space.id(), H5S_SELECT_SET, start.data(), nullptr, count.data(), nullptr),
               "select a column");
   const hsize_t total = rows;

@@ -4,8 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cmath>
 
-#include "ident/base/not_a_number.hpp"
 #include "io/arrays/hdf5_objects.hpp"
 #include "modebank/base/error.hpp"
 
@@ -40,14 +40,13 @@ void Hdf5Walk::turn_matrices() {
   std::set<std::uint64_t> lengths;
   for (const StoredColumn& column : columns) lengths.insert(column.rows);
   for (const Matrix& matrix : matrices_) {
-    hsize_t along = matrix.along, across = matrix.across;
-    const bool fits = lengths.contains(matrix.shape[along]), fits_across = lengths.contains(matrix.shape[across]);
-    const bool by_rows = are_channels_rows(matrix.shape[along], matrix.shape[across]);
-    if (fits ? fits_across && by_rows : fits_across || by_rows) std::swap(along, across);
-    if (!fits && !fits_across && by_rows)
-      left_out.push_back(fmt::format("{} has {} rows, which are read as channels, because they are far longer",
-                                     matrix.column.path(), matrix.shape[across]));
-    const hsize_t wide = std::min<hsize_t>(matrix.shape[across], most_columns);
+    hsize_t along = matrix.habit;
+    if (!lengths.contains(matrix.shape[along]) && lengths.contains(matrix.shape[1 - along])) along = 1 - along;
+    if (!lengths.contains(matrix.shape[along]) && matrix.shape[1 - along] > 10 * matrix.shape[along]) {
+      note_array(matrix.column.path(), matrix.object);
+      continue;
+    }
+    const hsize_t wide = std::min<hsize_t>(matrix.shape[1 - along], most_columns);
     for (hsize_t j = 0; j < wide; ++j) {
       StoredColumn column = matrix.column;
       column.name += fmt::format("[{}]", j);
@@ -68,6 +67,11 @@ bool Hdf5Walk::is_object(hid_t id, const std::string& made) {
 
 void Hdf5Walk::note_object(const std::string& made, const std::string& name) {
   left_out.push_back(matlab_object(made, name, made == "iddata" ? "" : file));
+}
+
+void Hdf5Walk::note_array(const std::string& name, const std::string& path) {
+  left_out.push_back(not_a_table(name, fmt::format("import h5py; f = h5py.File('{}'); a = f['{}'][()]", file, path),
+                                 "[f[r][()] for r in a.flat]"));
 }
 
 void Hdf5Walk::note_foreign(const std::string& path) {
@@ -98,22 +102,16 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
   if (made == "char") return;
   if (H5Tget_class(type.id()) == H5T_REFERENCE && made.empty() && depth > 0 && depth < deepest_group)
     return struct_array(id, type.id(), shape, group_name, name, depth);
-  if (made == "cell")
-    return left_out.push_back(not_a_table(
-        full, "is a cell array",
-        fmt::format(
-            "python3 -c \"import h5py, numpy as np; h = h5py.File('{}'); [np.savetxt(f'{}_{{i}}.csv', h[r][()].T, "
-            "delimiter=',') for i, r in enumerate(np.ravel(h['{}']))]\"",
-            file, full, path)));
+  if (made == "cell") return note_array(full, path);
   if (!made.empty() && made != "logical" && !hdf5_is_number(type.id())) return;
   StoredColumn column{group_name, name, hdf5_type_name(type.id()), hdf5_unit(id)};
   column.text = hdf5_is_text(type.id());
-  const auto scale = hdf5_number_attribute(id, "scale_factor"), offset = hdf5_number_attribute(id, "add_offset"),
-             fill = hdf5_number_attribute(id, "_FillValue");
-  column.packed = scale || offset || fill;
-  column.packing = {scale.value_or(1.0), offset.value_or(0.0), fill.value_or(not_a_number)};
-  if (column.packed) left_out.push_back(full + " is read by its scale_factor, add_offset and _FillValue");
-  column.whole = hdf5_is_whole(type.id()) && !column.packed;
+  column.scale = hdf5_number_attribute(id, "scale_factor", column.scale);
+  column.offset = hdf5_number_attribute(id, "add_offset", column.offset);
+  column.fill = hdf5_number_attribute(id, "_FillValue", column.fill);
+  const bool packed = column.scale != 1.0 || column.offset != 0.0 || !std::isnan(column.fill);
+  if (packed) left_out.push_back(full + " is read by its scale_factor, add_offset and _FillValue");
+  column.whole = hdf5_is_whole(type.id()) && !packed;
   const bool table = H5Tget_class(type.id()) == H5T_COMPOUND;
   if (!table && !column.text && !hdf5_is_number(type.id())) return;
   if (hdf5::element_count(shape) > 1 &&
@@ -128,17 +126,16 @@ void Hdf5Walk::dataset(hid_t id, const std::string& path, const std::string& gro
 void Hdf5Walk::plain(StoredColumn column, const std::string& path, const Shape& shape, hsize_t habit) {
   if (column.name == "Ts" && !column.text && hdf5::element_count(shape) == 1)
     sample_times[column.group] = {path, {}, 0, 0};
-  std::vector<hsize_t> sides;  // the dimensions that are longer than one
-  for (hsize_t d = 0; d < shape.size(); ++d)
-    if (shape[d] > 1) sides.push_back(d);
-  if (sides.empty() || (column.text && sides.size() > 1)) return;
-  if (sides.size() > 2)
-    return left_out.push_back(
-        not_a_table(column.path(), fmt::format("is an array of {}", fmt::join(shape, " x ")),
-                    savetxt_line("h5py", fmt::format("h5py.File('{}')['{}'][()]", file, path), column.path())));
-  if (sides.size() == 2) return matrices_.push_back({std::move(column), path, shape, sides[habit], sides[1 - habit]});
-  column.rows = shape[sides[0]];
-  add(std::move(column), {path, {}, 0, sides[0]});
+  if (shape.size() == 1 && shape[0] > 1) {
+    column.rows = shape[0];
+    return add(std::move(column), {path, {}, 0, 0});
+  }
+  if (shape.size() > 2 && hdf5::element_count(shape) > 1) return note_array(column.path(), path);
+  if (shape.size() != 2 || shape[0] * shape[1] <= 1 || (column.text && shape[1] != 1)) return;
+  if (shape[0] > 1 && shape[1] > 1) return matrices_.push_back({std::move(column), path, shape, habit});
+  const hsize_t along = shape[0] > 1 ? 0 : 1;
+  column.rows = shape[along];
+  add(std::move(column), {path, {}, 0, along});
 }
 
 void Hdf5Walk::compound(hid_t type, const Shape& shape, const Hdf5Place& place, const std::string& group_name) {

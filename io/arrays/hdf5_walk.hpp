@@ -46,7 +46,7 @@ class Hdf5Walk {
     StoredColumn column;
     std::string object;
     hdf5::Shape shape;
-    hsize_t along, across;  ///< the dimensions of rows and columns, if the file's other columns do not contradict
+    hsize_t habit;
   };
   std::vector<Matrix> matrices_;
   std::set<haddr_t> seen_;
@@ -56,6 +56,8 @@ class Hdf5Walk {
   static bool is_object(hid_t id, const std::string& made);
 
   void note_object(const std::string& made, const std::string& name);
+
+  void note_array(const std::string& name, const std::string& path);
 
   void note_foreign(const std::string& path);
 

@@ -80,6 +80,12 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
   return v;
 }
 
+constexpr auto from_modelica = R"py({0} is the result of a Modelica simulator, which is not read: python3 -c "
+import scipy.io, numpy as np; m = scipy.io.loadmat('{0}'); d = m['dataInfo'][1] * (m['dataInfo'][0] != 1)
+head = ';'.join(''.join(c).strip() for c, k in zip(zip(*m['name']), d) if k)
+x = m['data_2'][abs(d[d != 0]) - 1].T * np.sign(d[d != 0])
+np.savetxt('{0}.csv', x, delimiter=';', comments='', header=head)")py";
+
 /// Lists the columns. Only the variables' headers are read.
 class MatWalk {
  public:
@@ -89,46 +95,35 @@ class MatWalk {
   std::vector<MatPlace> places;
   std::map<std::string, MatPlace> sample_time_places;
   std::vector<std::string> left_out;
-  bool modelica = false;  ///< a result of a Modelica simulator: dataInfo says what the rows of data_2 are
 
   void variable(const matvar_t& v) {
     if (v.class_type == MAT_C_OPAQUE) return left_out.push_back(matlab_objects_without_name());
     if (!v.name) return;
-    modelica = modelica || std::string_view(v.name) == "dataInfo";
+    if (std::string_view(v.name) == "dataInfo") throw ConfigurationError(fmt::format(from_modelica, file_));
     part(v, "", v.name, {v.name, {}}, 0);
   }
 
  private:
   const std::string& file_;
 
-  /// The expression of Python that reads a variable, or a field of a struct.
-  std::string loaded(const std::string& path) const {
-    return fmt::format("scipy.io.loadmat('{}', simplify_cells=True)['{}']", file_,
-                       boost::replace_all_copy(path, ".", "']['"));
-  }
-
   void part(const matvar_t& v, const std::string& group, const std::string& name, const MatPlace& place, int depth) {
     const std::string path = group.empty() ? name : group + "." + name;
     if (v.class_type == MAT_C_STRUCT) return fields(v, path, place, depth);
     if (v.class_type == MAT_C_OBJECT || v.class_type == MAT_C_OPAQUE)
       return left_out.push_back(matlab_object("", path, file_));
-    if (v.class_type == MAT_C_CELL)
-      return left_out.push_back(not_a_table(
-          path, "is a cell array",
-          fmt::format(
-              "python3 -c \"import scipy.io, numpy as np; [np.savetxt(f'{}_{{i}}.csv', a, delimiter=',') for i, a "
-              "in enumerate({}) if np.ndim(a)]\"",
-              path, loaded(path))));
+    const bool in_rows = v.rank == 2 && v.dims[0] > 1 && v.dims[1] > 10 * v.dims[0];
+    if (v.class_type == MAT_C_CELL || (is_number(v) && (v.rank > 2 || in_rows))) {
+      const std::string names = boost::replace_all_copy(path, ".", "']['");
+      constexpr auto read = "import scipy.io; a = scipy.io.loadmat('{}', simplify_cells=True)['{}']";
+      return left_out.push_back(not_a_table(path, fmt::format(read, file_, names), "a"));
+    }
     if (!is_number(v)) return;
     if (name == "Ts" && elements(v) == 1) sample_time_places[group] = place;
-    std::vector<std::size_t> sides;
-    std::copy_if(v.dims, v.dims + v.rank, std::back_inserter(sides), [](std::size_t side) { return side > 1; });
-    if (sides.empty() || elements(v) < 2) return;
-    const bool vector = sides.size() == 1;
-    if (!vector && (sides.size() > 2 || are_channels_rows(sides[0], sides[1])))
-      return left_out.push_back(not_a_table(path, fmt::format("is an array of {}", fmt::join(sides, " x ")),
-                                            savetxt_line("scipy.io", loaded(path), path)));
-    const std::size_t length = sides[0], count = vector ? 1 : std::min(sides[1], std::size_t{most_columns});
+    if (v.rank != 2 || elements(v) < 2) return;
+    const std::size_t rows = v.dims[0], wide = v.dims[1];
+    const bool vector = rows == 1 || wide == 1;
+    const std::size_t length = vector ? rows * wide : rows,
+                      count = vector ? 1 : std::min(wide, std::size_t{most_columns});
     for (std::size_t j = 0; j < count; ++j) {
       StoredColumn column{group, vector ? name : fmt::format("{}[{}]", name, j), type_name(v), "", length};
       column.whole = v.class_type >= MAT_C_INT8 && !v.isLogical;
@@ -155,23 +150,12 @@ class MatWalk {
   }
 };
 
-[[noreturn]] void refuse_modelica(const std::string& file) {
-  throw ConfigurationError(fmt::format(
-      "{0} is the result of a Modelica simulator, whose names and numbers are in different variables; as text: python3 "
-      "-c \"import scipy.io, numpy as np; m = scipy.io.loadmat('{0}'); d = m['dataInfo']; s = [i for i in "
-      "range(d.shape[1]) if d[0, i] != 1]; n = [''.join(c).strip() for c in zip(*m['name'])]; np.savetxt('{0}.csv', "
-      "m['data_2'][abs(d[1, s]) - 1].T * np.sign(d[1, s]), delimiter=';', comments='', header=';'.join(n[i] for i in "
-      "s))\"",
-      file));
-}
-
 class MatColumns : public ColumnStore {
  public:
   explicit MatColumns(const std::filesystem::path& path) : path_(path.string()) {
     MatWalk walk(path_);
     const MatFile file = open_mat(path_);
     for (Variable v(Mat_VarReadNextInfo(file.get())); v; v.reset(Mat_VarReadNextInfo(file.get()))) walk.variable(*v);
-    if (walk.modelica) refuse_modelica(path_);
     columns_ = std::move(walk.columns);
     places_ = std::move(walk.places);
     left_out_ = std::move(walk.left_out);

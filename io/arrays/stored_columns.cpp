@@ -31,15 +31,14 @@ void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::st
   }
 }
 
-std::string not_a_table(const std::string& name, const std::string& why, const std::string& python) {
-  return fmt::format("{} {}, so it is not read; as text: {}", name, why, python);
-}
-
-std::string savetxt_line(const std::string& module, const std::string& array, const std::string& name) {
-  return fmt::format(
-      "python3 -c \"import {}, numpy as np; a = np.squeeze({}); k = np.argmax(a.shape); np.savetxt('{}.csv', "
-      "np.moveaxis(a, k, 0).reshape(a.shape[k], -1), delimiter=',')\"",
-      module, array, name);
+std::string not_a_table(const std::string& name, const std::string& read, const std::string& cells) {
+  constexpr auto line =
+      R"py({0} is no table, but cells, rows of samples or three-dimensional, and not read: python3 -c "{1}
+import numpy as np
+for i, b in enumerate({2} if getattr(a, 'dtype', object) == object else [a]):
+  b = np.moveaxis(np.squeeze(b), np.argmax(np.squeeze(b).shape), 0)
+  np.savetxt(f'{0}_{{i}}.csv', b.reshape(len(b), -1), delimiter=',')")py";
+  return fmt::format(line, name, read, cells);
 }
 
 std::string matlab_conversion(const std::string& class_name, const std::string& variable) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -9,6 +8,7 @@
 #include <string_view>
 #include <vector>
 
+#include "ident/base/not_a_number.hpp"
 #include "io/table/table_reader.hpp"
 
 namespace modebank {
@@ -22,8 +22,7 @@ struct StoredColumn {
   std::uint64_t rows = 0;
   bool whole = false;  ///< the values are whole numbers; whole_numbers() returns them exactly
   bool text = false;
-  bool packed = false;  ///< a value is packing[0] * stored + packing[1], or missing if packing[2] is stored (netCDF)
-  std::array<double, 3> packing = {};
+  double scale = 1.0, offset = 0.0, fill = not_a_number;  ///< a value is scale * stored + offset; fill is missing
   double step_s = 0.0;  ///< > 0: the file has no values, and row k has the value k * step_s
 
   std::string path() const { return group.empty() ? name : group + "." + name; }
@@ -75,14 +74,9 @@ std::string matlab_object(const std::string& class_name, const std::string& vari
 /// these objects.
 std::string matlab_objects_without_name();
 
-/// Whether a matrix has far more columns than rows, so that its rows are the channels.
-constexpr bool are_channels_rows(std::uint64_t rows, std::uint64_t columns) { return columns > 10 * rows; }
-
-/// A line that names an array that is no table, with the line of Python that makes text files of it.
-std::string not_a_table(const std::string& name, const std::string& why, const std::string& python);
-/// A line of Python that writes an array of numbers as text, its longest dimension as rows. `array`: the expression
-/// that reads the array with this module.
-std::string savetxt_line(const std::string& module, const std::string& array, const std::string& name);
+/// A line that names an array that is no table, with lines of Python that write it as text, the longest dimension as
+/// rows. `read`: the statements that make it `a`; `cells`: the arrays if `a` has objects.
+std::string not_a_table(const std::string& name, const std::string& read, const std::string& cells);
 
 /// A matrix with more columns than this is not listed column by column.
 constexpr std::uint64_t most_columns = 1000;

@@ -174,13 +174,6 @@ TableSink make_sink(std::string_view file, const CsvHead& head, const TableReque
   return sink;
 }
 
-/// The header as it is written. Empty if the text has none.
-std::string_view header_of(std::string_view text, const CsvHead& head) {
-  for (const TextRecord& record : first_records(text, true, rows_looked_at_for_table))
-    if (head.dialect.header_rows > 0 && !is_comment(record.text)) return record.text;
-  return {};
-}
-
 /// Whether a comment follows the first rows.
 bool has_late_comment(std::string_view text) {
   for (std::size_t at = text.find('#'); at != std::string_view::npos; at = text.find('#', at + 1))
@@ -195,14 +188,16 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   TableSink sink = make_sink(file, head, request, rows_at_most, na);
   sink.header_rows = head.dialect.header_rows;
   PreparedText prepared;
-  const std::string_view header = header_of(text, head);
-  const bool repeats = !header.empty() && text.find(fmt::format("\n{}", header)) != std::string_view::npos;
-  if (head.dialect.rewritten() || has_late_comment(text) || repeats) {
-    prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line(), header);
+  const std::string_view first = text.substr(0, text.find('\n'));
+  const std::size_t again = first.empty() || is_comment(first) ? text.npos : text.find(fmt::format("\n{}\n", first));
+  if (head.dialect.header_rows > 0 && again < text.size())
+    throw DataError(fmt::format(
+        "{0}:{1}: the header again; leave such lines out: python3 -c \"a = open('{0}').readlines(); "
+        "open('one.csv', 'w').writelines(c for i, c in enumerate(a) if i == {2} or c != a[{2}])\"",
+        file, head.dialect.first_line() + 1 + std::ranges::count(text.substr(0, again), '\n'), head.dialect.skipped));
+  if (head.dialect.rewritten() || has_late_comment(text)) {
+    prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line());
     sink.comment_lines = std::move(prepared.comment_lines);
-    if (prepared.repeated_line > 0)
-      sink.table.notes.push_back(
-          fmt::format("line {} repeats the header; such lines are left out", prepared.repeated_line));
     text = prepared.text;
   }
   CsvPass pass(file, sink, head.dialect.delimiter(), head.dialect.first_line());
@@ -215,7 +210,11 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   pass.feed(text);
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
-  if (!head.contradiction.empty()) sink.table.notes.push_back(head.contradiction);
+  const auto named = named_time_unit(request.time.column);
+  if (const TimeUnit read = sink.table.form.unit; named && *named != read && request.time.unit == TimeUnit::automatic)
+    sink.table.notes.push_back(
+        fmt::format("the name of {} says {}, but the units say {}, which is taken (data.time_unit)",
+                    request.time.column, in_words(*named), in_words(read)));
   if (!head.dialect.note.empty()) sink.table.notes.push_back(head.dialect.note);
   if (const std::size_t skipped = head.dialect.skipped; skipped > 0)
     sink.table.notes.push_back(fmt::format("{} line{} above the table {} skipped (data.skip_rows)", skipped,

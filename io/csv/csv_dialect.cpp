@@ -56,13 +56,11 @@ std::vector<Fields> split(const std::vector<TextRecord>& records, Separator sepa
   std::vector<Fields> rows;
   for (const TextRecord& record : records) rows.push_back(fields_of(record.text, delimiter_of(separator)));
   const std::size_t width = common_width(rows);
-  bool header = false, ends = width > 2;
-  for (const Fields& row : rows) {
-    header = header || row.size() + 1 == width;
-    ends = ends && (row.size() != width || row.back().empty());
-  }
+  const auto ends = [&](const Fields& row) { return row.size() != width || row.back().empty(); };
+  const bool shorter = std::ranges::any_of(rows, [&](const Fields& row) { return row.size() + 1 == width; });
+  const std::size_t ended = width > 2 && shorter && std::ranges::all_of(rows, ends) ? width : width + 1;
   for (Fields& row : rows)
-    if (row.size() > 1 && row.size() == (header && ends ? width : width + 1) && row.back().empty()) row.pop_back();
+    if (row.size() == ended && row.back().empty()) row.pop_back();
   return rows;
 }
 
@@ -73,12 +71,12 @@ double score(const std::vector<Fields>& rows) {
   if (width < 2) return 0.0;
   const auto common = std::count_if(rows.begin(), rows.end(), [&](const Fields& row) { return row.size() == width; });
   std::size_t values = 0, fields = 0;
-  for (const Fields& row : rows) {
-    std::size_t filled = row.size();
-    while (filled > 0 && row[filled - 1].empty()) --filled;  // missing last values say nothing
-    fields += filled;
-    for (const std::string& field : row) values += is_value(field) ? 1 : 0;
-  }
+  for (const Fields& row : rows)
+    for (const std::string& field : row) {
+      if (field.empty()) continue;  // a missing value says nothing
+      ++fields;
+      values += is_value(field) ? 1 : 0;
+    }
   return static_cast<double>(common) / static_cast<double>(rows.size()) +
          static_cast<double>(values) / static_cast<double>(fields);
 }

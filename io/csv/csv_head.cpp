@@ -8,7 +8,6 @@
 #include "io/csv/csv_text.hpp"
 #include "io/files/read_file.hpp"
 #include "io/table/name_unit.hpp"
-#include "io/table/time_unit.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -70,13 +69,8 @@ CsvHead read_csv_head(std::string_view file, std::string_view text, bool complet
   if (head.names.empty()) throw ConfigurationError(no_header(file, head.dialect));
   if (head.names.size() > most_csv_columns) throw DataError(fmt::format("{}: {}", file, too_many_columns()));
   head.units.resize(head.names.size());
-  for (std::size_t i = 0; i < head.names.size(); ++i) {
-    const auto named = named_time_unit(head.names[i]), stated = stated_time_unit(head.units[i]);
-    if (named && stated && *named != *stated && !head.units[i].empty())
-      head.contradiction = fmt::format("the name of {} says {}, but the units say {}, which is taken (data.time_unit)",
-                                       head.names[i], in_words(*named), in_words(*stated));
+  for (std::size_t i = 0; i < head.names.size(); ++i)
     head.units[i] = head.units[i].empty() ? split_unit(head.names[i]).unit : bare_unit(head.units[i]);
-  }
   return head;
 }
 

@@ -13,7 +13,6 @@ namespace modebank {
 struct CsvHead {
   CsvDialect dialect;
   std::vector<std::string> names, units;
-  std::string contradiction = {};  ///< remark on a column whose name and unit differ
 };
 
 /// The head of a text, or of its beginning unless it is `complete`. `file`: name for error messages. Throws

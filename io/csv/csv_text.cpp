@@ -1,7 +1,6 @@
 #include "io/csv/csv_text.hpp"
 
 #include <algorithm>
-#include <utility>
 
 #include "ident/base/utf8.hpp"
 #include "io/table/number.hpp"
@@ -141,18 +140,14 @@ std::vector<std::string> fields_of(std::string_view record, char separator) {
   return fields;
 }
 
-PreparedText prepare_text(std::string_view text, bool blanks_separate, std::uint64_t first_line,
-                          std::string_view header) {
+PreparedText prepare_text(std::string_view text, bool blanks_separate, std::uint64_t first_line) {
   PreparedText result;
-  bool header_seen = false;
   result.text.reserve(text.size());
   std::uint64_t line = first_line;
   for (std::size_t start = 0; start < text.size(); ++line) {
     const std::size_t end = std::min(text.find('\n', start), text.size());
     std::string_view record = text.substr(start, end - start);
-    const bool is_header = !header.empty() && record == header, repeats = is_header && std::exchange(header_seen, true);
-    if (repeats) result.repeated_line = line;
-    if (is_comment(record) || repeats) {
+    if (is_comment(record)) {
       result.comment_lines.push_back(line);
     } else if (blanks_separate) {
       record = without_blanks(record);

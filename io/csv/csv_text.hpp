@@ -38,15 +38,13 @@ inline constexpr std::size_t most_csv_columns = 100'000;
 /// `separator` is ' ', any number of blanks and tabs separates fields.
 std::vector<std::string> fields_of(std::string_view record, char separator);
 
-/// Rewrites a text for libcsv. Comments, and lines that repeat `header`, become empty lines, and their line numbers are
-/// recorded. Sequences of blanks become `blank_separator`.
+/// Rewrites a text for libcsv. Comments become empty lines, and their line numbers are recorded. Sequences of blanks
+/// become `blank_separator`.
 inline constexpr char blank_separator = '\x1F';
 struct PreparedText {
   std::string text;
   std::vector<std::uint64_t> comment_lines;  ///< line numbers, counted from `first_line`
-  std::uint64_t repeated_line = 0;           ///< the last line that repeats the header
 };
-PreparedText prepare_text(std::string_view text, bool blanks_separate, std::uint64_t first_line,
-                          std::string_view header = {});
+PreparedText prepare_text(std::string_view text, bool blanks_separate, std::uint64_t first_line);
 
 }  // namespace modebank

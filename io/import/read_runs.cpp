@@ -29,8 +29,18 @@ void align_clocks(std::vector<Table>& tables) {
   }
 }
 
+/// Where a clock starts again, a run begins, as if a column of the table said so.
+void begin_runs(SourcePlan& plan, Table& table, std::vector<std::string>& notes) {
+  const std::vector<std::size_t> rows = clock_restarts({table.time_ns.begin(), table.time_ns.end()}, notes);
+  if (rows.empty()) return;
+  plan.run = table.texts.size();
+  std::vector<std::string>& names = table.texts.emplace_back();
+  for (std::size_t row = 0; row < table.rows(); ++row)
+    names.push_back(fmt::to_string(1 + (std::ranges::upper_bound(rows, row) - rows.begin())));
+}
+
 /// The tables of the plan's sources, in order.
-std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent& result) {
+std::vector<Table> read_tables(FilePlan& plan, const DataOptions& options, FileContent& result) {
   std::vector<Table> tables(plan.sources.size());
   for (std::size_t path = 0; path < plan.paths.size(); ++path) {
     const auto [here, requests] = plan.requests_of(path);
@@ -47,19 +57,10 @@ std::vector<Table> read_tables(const FilePlan& plan, double rate_hz, FileContent
     }
   }
   align_clocks(tables);
-  const auto names_runs = [](const SourcePlan& of) { return of.run.has_value(); };
-  for (std::size_t source = 0; source < tables.size(); ++source) {
-    if (std::any_of(plan.sources.begin(), plan.sources.end(), names_runs)) break;
-    const std::string note = count_on_restarts(tables[source].time_ns);
-    if (!note.empty() && plan.paths.size() > 1)
-      throw DataError(
-          fmt::format("{}: {}; write one file for each", plan.paths[plan.sources[source].path].string(), note));
-    if (!note.empty()) tables[source].time_s.clear();
-    if (!note.empty()) result.notes.push_back(note);
-  }
   for (std::size_t source = 0; source < plan.sources.size(); ++source) {
-    const SourcePlan& of = plan.sources[source];
-    const RowOrder order{tables[plan.states_clock], of.run, rate_hz};
+    SourcePlan& of = plan.sources[source];
+    if (options.run.empty()) begin_runs(of, tables[source], result.notes);
+    const RowOrder order{tables[plan.states_clock], of.run, options.rate_hz};
     derive_columns(plan.paths[of.path].string(), of.request, of.derived, order, tables[source]);
   }
   return tables;
@@ -105,8 +106,8 @@ std::map<std::string, RunSlice> slices_of(const FilePlan& plan, const RowReader&
 }
 
 /// Name of a run, made from its column's value. The slash of ROS 1 frame names, such as "/base", is removed.
-std::string run_name(const FilePlan& plan, std::string value, const DataOptions& options) {
-  if (options.run.empty()) return plan.name;
+std::string run_name(const FilePlan& plan, std::string value) {
+  if (value.empty()) return plan.name;
   if (value.starts_with('/')) value.erase(0, 1);
   return plan.starred ? plan.name + "_" + value : value;
 }
@@ -151,13 +152,13 @@ RunStreams streams_of(const FilePlan& plan, const RowReader& reader, const std::
 
 }  // namespace
 
-void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result) {
+void read_runs(FilePlan plan, const DataOptions& options, FileContent& result) {
   result.notes = plan.notes;
-  const std::vector<Table> tables = read_tables(plan, options.rate_hz, result);
+  const std::vector<Table> tables = read_tables(plan, options, result);
   check_row_counts(plan, tables);
   const RowReader reader(plan, tables, options);
   for (const auto& [value, slice] : slices_of(plan, reader, result.unset))
-    result.runs.push_back(streams_of(plan, reader, run_name(plan, value, options), slice));
+    result.runs.push_back(streams_of(plan, reader, run_name(plan, value), slice));
 }
 
 }  // namespace modebank

@@ -28,6 +28,6 @@ struct FileContent {
 /// If a run's states (or inputs) come from several tables, they have the times of the first table. The other tables'
 /// states are interpolated to these times, and their inputs are held. options.disorder determines how these streams are
 /// sorted.
-void read_runs(const FilePlan& plan, const DataOptions& options, FileContent& result);
+void read_runs(FilePlan plan, const DataOptions& options, FileContent& result);
 
 }  // namespace modebank

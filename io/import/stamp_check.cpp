@@ -83,25 +83,20 @@ std::size_t rows_before_clock_was_set(const std::vector<std::int64_t>& stamps_ns
   return dwarfs ? rows[first] : 0;
 }
 
-std::string count_on_restarts(std::vector<std::int64_t>& stamps_ns) {
-  constexpr std::size_t fewest = 10;                      // rows on both sides
-  constexpr double near_start = 0.02, longest_ns = 1e17;  // later stamps are dates, which do not start again
-  const std::vector<double> times(stamps_ns.begin(), stamps_ns.end());
-  std::string note;
+std::vector<std::size_t> clock_restarts(const std::vector<double>& times, std::vector<std::string>& notes) {
+  constexpr std::size_t fewest = 10;                  // rows on both sides
+  constexpr double near_start = 0.02, date = 1000.0;  // as shares of the drive; dates do not start again
+  std::vector<std::size_t> rows;
   for (std::size_t first = 0, k = fewest; k + fewest <= times.size(); ++k) {
+    const double span = times[k - 1] - times[first], fallen = std::abs(times[k] - times[first]);
+    const bool falls = fallen < near_start * span && times[first] < date * span;
     const auto row = times.begin() + static_cast<std::ptrdiff_t>(k), end = row + fewest;
-    const double span = row[-1] - times[first];
-    const bool falls = *row < row[-1] && std::abs(*row - times[first]) <= near_start * span && span < longest_ns;
-    if (k < first + fewest || !falls || times[first] > longest_ns || end[-1] - *row > span) continue;
-    if (std::adjacent_find(row, end, std::greater_equal<>()) != end) continue;
-    note = fmt::format("the clock starts again{}; what follows is a run of its own",
-                       note.empty() ? fmt::format(" in row {}", k + 1) : ", more than once");
-    const std::int64_t shift_ns = 2 * std::llround(span);
-    for (std::size_t later = k; later < stamps_ns.size(); ++later)
-      stamps_ns[later] += stamps_ns[later] == missing_stamp ? 0 : shift_ns;
-    first = k;
+    const bool advances = end[-1] - *row < span && std::adjacent_find(row, end, std::greater_equal<>()) == end;
+    if (k >= first + fewest && falls && advances) rows.push_back(first = k);
   }
-  return note;
+  if (!rows.empty())
+    notes.push_back(fmt::format("the clock starts again in row {}; a run begins there (data.run)", rows.front() + 1));
+  return rows;
 }
 
 std::string disorder_hint(const FileStream& source, Index k) {

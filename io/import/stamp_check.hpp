@@ -23,9 +23,8 @@ std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps
 /// count. Missing stamps are ignored.
 std::size_t rows_before_clock_was_set(const std::vector<std::int64_t>& stamps_ns);
 
-/// Where a clock falls back to its start and then advances in even steps, a second drive follows in the file. It is
-/// moved behind a gap as long as the first. Returns a remark, or an empty text if the clock does not start again.
-std::string count_on_restarts(std::vector<std::int64_t>& stamps_ns);
+/// The rows where a clock falls back to its start and then advances: another drive follows in the file. A note says so.
+std::vector<std::size_t> clock_restarts(const std::vector<double>& times, std::vector<std::string>& notes);
 
 /// Text to append to the message "times go backwards or repeat at sample k". It states a possible cause. Empty if no
 /// cause is known.

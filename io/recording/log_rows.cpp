@@ -100,7 +100,13 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
     throw DataError(fmt::format("{}:{}: topic {} ({}): the definition does not fit the message: {}", file, messages_,
                                 topic_.name, topic_.type, error.what()));
   }
-  if (lacks_all_names(chosen)) return;
+  bool named = false, found = false;  // a message without any of the requested names is another publisher's
+  for (std::size_t i = 0; i < chosen.slots.size(); ++i) {
+    if (request_.columns[i].column.find('{') == std::string::npos) continue;
+    named = true;
+    found = found || row_[chosen.slots[i]].form != Value::Form::missing;
+  }
+  if (named && !found) return;
   rows_.message.push_back(messages_);
   receive_ns_.push_back(message.receive_ns);
   for (std::size_t i = 0; i < chosen.slots.size(); ++i) {
@@ -109,17 +115,6 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
     if (request_.columns[i].form == Form::number && is_rounded(value)) ++rounded_[i];
     append(rows_.columns[i], request_.columns[i], value, file);
   }
-}
-
-/// Whether elements are requested by name, and the message has none of these names: it is another publisher's.
-bool RowCollector::lacks_all_names(const Reader& reader) const {
-  bool named = false;
-  for (std::size_t i = 0; i < reader.slots.size(); ++i) {
-    if (request_.columns[i].column.find('{') == std::string::npos) continue;
-    if (row_[reader.slots[i]].form != Value::Form::missing) return false;
-    named = true;
-  }
-  return named;
 }
 
 void RowCollector::append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file) {

@@ -30,7 +30,6 @@ class RowCollector {
     std::vector<std::size_t> slots;  ///< one for each requested column
   };
 
-  bool lacks_all_names(const Reader& reader) const;
   void append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file);
 
   const LogTopic& topic_;

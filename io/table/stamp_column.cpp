@@ -207,32 +207,21 @@ void StampColumn::decide_reading(Table& table) {
         fmt::format("column {} is read as {} (data.time_format)", request_.column, chosen.pattern.text()));
 }
 
-/// Whole numbers that fall by nearly 2^32 come from a counter of 32 bits.
-void StampColumn::unwrap(std::vector<std::string>& notes) {
-  constexpr double turn = 0x1p32;
-  double add = 0.0, before = 0.0;
-  for (std::size_t k = 0; k < stamps_.size(); ++k) {
-    const double value = as_written_[k], step = value - before + turn;
-    if (!(std::abs(value) < turn)) continue;  // missing, or more than 32 bits
-    if (step > 0.0 && step < turn / 16.0) add += turn;
-    before = value;
-    stamps_[k].whole += static_cast<std::int64_t>(add);
-    as_written_[k] += add;
-  }
-  if (add > 0.0)
-    notes.push_back(fmt::format("{} falls by 2^32, as a counter of 32 bits does, and is counted on", request_.column));
-}
-
 void StampColumn::finish(std::string_view file, Table& table) {
   if (kind_ == Kind::text) return decide_reading(table);
-  if (whole_numbers_ && request_.second.empty()) unwrap(table.notes);
   table.form = found_form(table.notes);
   StampForm& form = table.form;
   if (kind_ == Kind::unknown) form.ground = StampForm::Ground::none;
   table.time_ns.assign(stamps_.size(), missing_stamp);
   const double most = largest_whole / static_cast<double>(ns_per(form.unit));
+  double turns = 0.0, before = 0.0;
   for (std::size_t k = 0; k < stamps_.size(); ++k) {
     if (std::isnan(as_written_[k])) continue;
+    // Whole numbers that fall by nearly 2^32 come from a counter of 32 bits.
+    if (whole_numbers_ && before < 0x1p32 && before - as_written_[k] > 0x1.ep31) turns += 0x1p32;
+    before = as_written_[k];
+    as_written_[k] += turns;
+    stamps_[k].whole += static_cast<std::int64_t>(turns);
     if (form.value.empty()) {
       form.value = fmt::format("{}", as_written_[k]);
       form.line = table.line[k];
@@ -243,6 +232,9 @@ void StampColumn::finish(std::string_view file, Table& table) {
                                   request_.column, as_written_[k], in_words(form.unit)));
     table.time_ns[k] = nanoseconds(k, form);
   }
+  if (turns > 0.0)
+    table.notes.push_back(
+        fmt::format("{} falls by 2^32, as a counter of 32 bits does, and is counted on", request_.column));
   if (form.unit == TimeUnit::s && request_.second.empty()) table.time_s = std::move(as_written_);
 }
 

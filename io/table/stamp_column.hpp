@@ -55,7 +55,6 @@ class StampColumn {
   };
 
   void push(Stamp stamp, double as_written);
-  void unwrap(std::vector<std::string>& notes);
   NumberStatus add_by_patterns(std::string_view text);
   bool start_readings(std::string_view text);
   StampForm found_form(std::vector<std::string>& notes) const;

@@ -66,8 +66,9 @@ class Columns(FieldTest):
     def test_angles_that_wrap_and_inputs_at_their_limit(self):
         t, u, x = plant()
         self.write("log.csv", time=t, heading_deg=np.cumsum(20 + 9 * x) % 360, throttle=np.clip(60 + 80 * u, 0, 100))
-        keys, doubts = self.expect("heading_deg_unwrapped", "throttle")
-        self.assertIn("unwrap", keys["derive"])
+        doubts = self.expect("heading_deg", "throttle")[1]
+        self.assertIn("heading_deg jumps by 360", doubts)
+        self.assertIn("data.derive = turned = unwrap", doubts)
         self.assertIn("throttle stands at its limit, 100", doubts)
 
     def test_stated_keys_settle_doubts(self):

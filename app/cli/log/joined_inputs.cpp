@@ -103,9 +103,8 @@ void leave_out_joined_inputs(const std::filesystem::path& file, const std::files
     if (relation->follows_states) throw DataError(words + resting_words);
     if (stated) return;
     const Index out = input_to_leave(*relation, names, n) - n;
-    proposal.doubt(
-        fmt::format("{}{}: {} is left out of the inputs", words, alike_words, names[static_cast<std::size_t>(n + out)]),
-        "input");
+    proposal.doubt(fmt::format("{}{}: {} is left out of the inputs", words, alike_words,
+                               names[static_cast<std::size_t>(n + out)]));
     kept.erase(kept.begin() + out);
     remove_input(recording, out);
     proposal.set("input", format_value(kept), words);

@@ -82,7 +82,7 @@ std::string taken_text(const std::vector<FileSet>& sets, const std::vector<Surve
                      paragraph("state", channels_text(proposal, "state")) +
                      paragraph("inputs", channels_text(proposal, "input")) +
                      paragraph("runs", runs_text(sets, proposal));
-  for (const Doubt& doubt : proposal.doubts) text += paragraph("doubt", doubt.text);
+  for (const std::string& doubt : proposal.doubts) text += paragraph("doubt", doubt);
   return text;
 }
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
-#include <regex>
+#include <sstream>
 
 #include "app/study/launch/shell.hpp"
 #include "ident/base/characters.hpp"
@@ -87,16 +87,14 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
   const std::string reason = fs::exists(errors) ? boost::trim_copy(read_file(errors)) : "";
   std::error_code ignored;
   fs::remove(errors, ignored);
-  // Sites print banners before the number, or words around it. Its form is id[;cluster].
-  static const std::regex number(R"((^|\s)(\d+)(;\S*)?(?=\s|$))");
-  std::string id;
-  for (std::sregex_iterator at(result.out.begin(), result.out.end(), number), end; at != end; ++at) id = (*at)[2];
+  std::string id, word;  // sites print banners before the number, or words around it
+  for (std::istringstream words(result.out); words >> word;)
+    if (const std::string number = word.substr(0, word.find(';'));
+        !number.empty() && std::ranges::all_of(number, is_digit))
+      id = number;
   if (result.status != 0 || id.empty())
     throw DataError(fmt::format("Slurm refused the job (exit status {}): {}\n  {}", result.status,
-                                !reason.empty()      ? reason
-                                : result.status != 0 ? "no reason given"
-                                                     : "sbatch printed no number of a job: " + result.out,
-                                command));
+                                reason.empty() ? "no number of a job in: " + result.out : reason, command));
   return id;
 }
 
