@@ -42,10 +42,12 @@ class PlainLogs(ProgramTest):
                             for k, row in enumerate(zip(*columns))]
         (self.folder / f"run_{run}.csv").write_text("\n".join([*lines, ""]))
 
+    def files(self):
+        return sorted(path.name for path in self.folder.glob("run_*.csv"))
+
     def learned(self, *words):
         """Attributes of /structure and arrays of /baseline."""
-        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
-        modebank("init", *files, "-o", "x.ini", "--force", cwd=self.folder)
+        modebank("init", *self.files(), "-o", "x.ini", "--force", cwd=self.folder)
         done = modebank("run", "x.ini", "--until", "windows", "--archive.output", "out.h5", "--force", *words,
                         cwd=self.folder)
         self.told = " ".join(done.stdout.split())
@@ -92,10 +94,10 @@ class PlainLogs(ProgramTest):
         structure, single = self.learned()
         self.assertEqual(structure["differences"], 1)
         self.near(single, "steady_gain", 0.8, 0.2)
+        np.testing.assert_allclose(single["Q"].flat[0], 0.05**2 * (1 + np.exp(-2 / 30)), rtol=0.3)  # (1 - a/q) steps
         deviations = [np.std(three) for three in itertools.combinations(levels, 3)]  # three runs train
         told = re.search(r"the level of temperature_c wanders or differs by run \(sd ([.\d]+)", self.told)
-        self.assertGreater(float(told[1]), 0.8 * min(deviations))
-        self.assertLess(float(told[1]), 1.2 * max(deviations))
+        self.assertTrue(0.8 * min(deviations) < float(told[1]) < 1.2 * max(deviations), told[0])
 
     def test_the_screen_has_the_operating_point_and_names_an_input_that_was_left_out(self):
         means = []
@@ -106,8 +108,7 @@ class PlainLogs(ProgramTest):
             self.write(run, 0.1, "time,altitude_m,thrust_n,collective_pct,battery_v", y, u, v,
                        np.cumsum(draw.standard_normal(400)))
             means.append(np.mean(y))
-        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
-        told = modebank("run", *files, "--archive.output", "out.h5", "--bank.refine", "none", cwd=self.folder).stdout
+        told = modebank("run", *self.files(), "--archive.output", "out.h5", "--bank.refine", "none", cwd=self.folder).stdout
         told = " ".join(told.split())
         gained = re.search(r"collective_pct also moves altitude_m \((\d+) nats\): "
                            "data.input = thrust_n, collective_pct;", told)
@@ -169,18 +170,17 @@ class PlainLogs(ProgramTest):
 
     def test_a_set_point_that_acts_through_the_actuator_is_left_out(self):
         self.loop(moves=True)
-        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
-        told = modebank("run", *files, "--data.input", "throttle, speed_setpoint", "--archive.output", "out.h5", cwd=self.folder)
+        told = modebank("run", *self.files(), "--data.input", "throttle, speed_setpoint", "--archive.output", "out.h5",
+                        cwd=self.folder)
         self.assertRegex(told.stdout, r"throttle = 2\.0+ \(speed_setpoint - speed\)")
         with h5py.File(self.folder / "out.h5") as file:
             self.assertGreater(file["baseline/steady_gain"].size, 0)
 
     def test_a_set_point_at_rest_is_refused(self):
         self.loop(moves=False)
-        files = sorted(path.name for path in self.folder.glob("run_*.csv"))
-        message = modebank("run", *files, "--data.input", "throttle", cwd=self.folder, status=1).stderr
+        message = modebank("run", *self.files(), "--data.input", "throttle", cwd=self.folder, status=1).stderr
         self.assertRegex(message, "throttle = .* set point")
-        modebank("init", *files, "-o", "x.ini", "--force", cwd=self.folder)
+        modebank("init", *self.files(), "-o", "x.ini", "--force", cwd=self.folder)
         done = modebank("run", "x.ini", "--until", "windows", "--data.input", "throttle", cwd=self.folder)
         self.assertRegex(" ".join(done.stdout.split()), "doubt throttle = .* set point")
 

@@ -78,26 +78,25 @@ ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, 
 }
 
 Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
-  const ArmaxNoise noise = noises(fit, stated_R);
+  ArmaxNoise noise = noises(fit, stated_R);
+  // A level that wanders is noise of the equation with a pole at 1, beside that of the plant.
+  if (fit.order.differences) noise.Q = noises(in_levels(fit), noise.R).Q;
   const Parameters own = parameters_of(fit), levels = parameters_of(in_levels(fit));
   const Index p = levels.structure.parameters();
   Bank bank = bank_frame(recording, levels.structure, noise.R.asDiagonal());
   bank.model = levels.structure.lagged() ? "varx" : "linear";
-  Mode mode = make_mode(levels.structure, levels.theta, noise.Q.asDiagonal(), Eigen::MatrixXd::Zero(p, p),
-                        levels.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0);
+  bank.modes.push_back(make_mode(levels.structure, levels.theta, noise.Q.asDiagonal(), Eigen::MatrixXd::Zero(p, p),
+                                 levels.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0));
   if (!fit.delays.empty())
-    mode.response = step_response(own.structure, own.theta, own.covariance, fit.delays, bank.dt_s);
+    bank.modes[0].response = step_response(own.structure, own.theta, own.covariance, fit.delays, bank.dt_s);
   bank.R_standard_error = errors_of_R(fit, stated_R).asDiagonal();
-  bank.modes.push_back(std::move(mode));
   set_mode_sequence(bank, TransitionMatrix());
   return bank;
 }
 
 std::optional<Bank> learn_armax(const Recording& recording, const ArmaxStructure& structure,
                                 const std::optional<Eigen::VectorXd>& stated_R) {
-  LinearStageOptions options;
-  options.only = structure;
-  const LinearStage stage = find_linear_stage(recording, options);
+  const LinearStage stage = find_linear_stage(recording, {.only = structure});
   if (stage.candidates.empty()) return {};
   return bank_of(recording, stage.fit(), stated_R);
 }

@@ -97,11 +97,12 @@ class GridDensities {
     for (const double ratio : ratios) {
       square_ = ratio / v_;
       log_variance_ += v_.log();
-      for (std::size_t d = 0; d < noise_.size(); ++d)
-        if (noise_[d].gaussian())
-          tail_.col(static_cast<Index>(d)) += square_;
+      for (Index d = 0; const StudentNoise& noise : noise_) {
+        if (noise.gaussian())
+          tail_.col(d++) += square_;
         else
-          tail_.col(static_cast<Index>(d)) += (1.0 + square_ / (noise_[d].degrees() - 2.0)).log();
+          tail_.col(d++) += (1.0 + square_ / (noise.degrees() - 2.0)).log();
+      }
       v_ = (keep_ * v_ + (1.0 - keep_) * ratio).max(floor_);
     }
     signals_ += static_cast<double>(ratios.size());
@@ -109,12 +110,11 @@ class GridDensities {
 
   /// The sums in the grid's order (lam, nu, floor), without half of log v0 and of log (1 + h'Ph).
   void write(Eigen::Ref<Eigen::VectorXd> out) const {
-    for (std::size_t d = 0; d < noise_.size(); ++d) {
-      const double weight = noise_[d].gaussian() ? 0.5 : 0.5 * (noise_[d].degrees() + 1.0);
-      const Eigen::ArrayXd sum =
-          signals_ * noise_[d].log_constant() - 0.5 * log_variance_ - weight * tail_.col(static_cast<Index>(d));
-      for (Index i = 0; i < sum.size(); ++i)
-        out((i / floors_ * std::ssize(noise_) + static_cast<Index>(d)) * floors_ + i % floors_) = sum(i);
+    for (Index d = 0; d < tail_.cols(); ++d) {
+      const StudentNoise& noise = noise_[static_cast<std::size_t>(d)];
+      const double weight = noise.gaussian() ? 0.5 : 0.5 * (noise.degrees() + 1.0);
+      const Eigen::ArrayXd sum = signals_ * noise.log_constant() - 0.5 * log_variance_ - weight * tail_.col(d);
+      for (Index i = 0; i < sum.size(); ++i) out((i / floors_ * tail_.cols() + d) * floors_ + i % floors_) = sum(i);
     }
   }
 
