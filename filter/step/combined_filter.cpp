@@ -1,6 +1,5 @@
 #include "filter/step/combined_filter.hpp"
 
-#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -47,13 +46,15 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   for (std::size_t i = 0; i < filters_.size(); ++i)
     log_densities_[i] = filters_[i].step(time_s, input, measurement).log_density;
   take_first();
-  if (estimate_.steps == 0) weights_.restart();
-  if (!std::isnan(estimate_.log_density)) mix(measurement);
+  if (estimate_.steps == 0)
+    weights_.restart();
+  else
+    mix(measurement);
   weights_.observe(log_densities_);
   return estimate_;
 }
 
-/// The first filter's estimate with the measured states alone. It is used as it is where that filter has no score.
+/// The first filter's estimate with the measured states alone. It is used as it is where that filter starts.
 void CombinedFilter::take_first() {
   const FilterEstimate& said = filters_.front().estimate();
   const Index n = said.innovation.size();
@@ -71,37 +72,36 @@ void CombinedFilter::take_first() {
   estimate_.steps = said.steps;
 }
 
-/// Combines the filters with their weights before this sample.
+/// Combines the filters with their weights before this sample, but those that have not started or have failed.
 void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
   FilterEstimate& mixed = estimate_;
   const Index n = mixed.innovation.size();
   mixed.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
-  for (auto* vector : {&mixed.prediction, &mixed.innovation, &mixed.state, &mixed.pit, &mixed.pit_width})
-    vector->setZero();
-  for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
   double spoken = 0.0;
   const auto each = [&](auto add) {
     for (std::size_t i = 0; i < filters_.size(); ++i)
-      if (!std::isnan(log_densities_[i])) add(weights_.weights()[i] / spoken, filters_[i].estimate());
+      if (const FilterEstimate& said = filters_[i].estimate(); said.prediction.allFinite())
+        add(weights_.weights()[i], said);
   };
-  for (std::size_t i = 0; i < filters_.size(); ++i)
-    if (!std::isnan(log_densities_[i])) spoken += weights_.weights()[i];
+  each([&](double weight, const FilterEstimate&) { spoken += weight; });
+  if (!(spoken > 0.0)) return;
+  for (auto* vector : {&mixed.prediction, &mixed.state, &mixed.pit, &mixed.pit_width}) vector->setZero();
+  for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
   each([&](double weight, const FilterEstimate& said) {
-    mixed.prediction += weight * said.prediction.head(n);
-    mixed.innovation += weight * said.innovation;
-    mixed.state += weight * said.state.head(n);
-    mixed.pit += weight * said.pit;
-    mixed.pit_width += weight * said.pit_width;
+    mixed.prediction += weight / spoken * said.prediction.head(n);
+    mixed.state += weight / spoken * said.state.head(n);
+    mixed.pit += weight / spoken * said.pit;
+    mixed.pit_width += weight / spoken * said.pit_width;
   });
   each([&](double weight, const FilterEstimate& said) {
-    apart_ = said.innovation - mixed.innovation;
-    for (double& value : apart_) value = std::isnan(value) ? 0.0 : value;
-    small::add_about_mean(mixed.innovation_covariance, weight, said.innovation_covariance, apart_);
+    apart_ = said.prediction.head(n) - mixed.prediction;
+    small::add_about_mean(mixed.innovation_covariance, weight / spoken, said.innovation_covariance, apart_);
     apart_ = said.state.head(n) - mixed.state;
-    small::add_about_mean(mixed.covariance, weight, said.covariance.topLeftCorner(n, n), apart_);
+    small::add_about_mean(mixed.covariance, weight / spoken, said.covariance.topLeftCorner(n, n), apart_);
   });
-  combined_.innovation = mixed.innovation;
+  combined_.innovation = measurement - mixed.prediction;
   combined_.normalise(mixed.innovation_covariance, measurement);
+  mixed.innovation = combined_.innovation;
   mixed.nis = combined_.nis;
 }
 

@@ -72,7 +72,7 @@ class BankFilter {
   /// The complete state of the filter as numbers for storage; some are NaN. It does not contain estimate().
   std::vector<double> snapshot() const;
   /// Continues from a snapshot of a filter with the same bank and options. Later steps are bit-identical to those of
-  /// that filter. Throws std::invalid_argument for a snapshot of another bank and for invalid numbers; the filter is
+  /// that filter. Throws std::invalid_argument for a snapshot of other sizes and for invalid numbers; the filter is
   /// then unchanged.
   void restore(const std::vector<double>& snapshot);
   /// Resets the filter; the next complete measurement starts it again.
