@@ -51,8 +51,8 @@ void refuse_keys(const KeyValues& overrides) {
 void take_data_keys(const KeyValues& overrides, Proposal& proposal) {
   for (const auto& [key, value] : overrides) {
     if (!key.starts_with("data.")) continue;
-    const std::string name = key.substr(5), stated = boost::trim_copy(value);
-    std::erase_if(proposal.doubts, [&](const std::string& doubt) {  // what is stated is no doubt
+    const auto name = key.substr(5), stated = boost::trim_copy(value);
+    std::erase_if(proposal.doubts, [&key = key](const auto& doubt) {  // what is stated is no doubt
       return doubt.find(key + " ") != std::string::npos || doubt.find(key + ")") != std::string::npos;
     });
     if (name != "derive") proposal.drop(name);  // each line of it makes another channel
