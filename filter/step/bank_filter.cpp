@@ -55,7 +55,8 @@ BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
       initial_probability_(bank.initial_probability),
       equations_(with_equations(bank, options,
                                 [](auto filter) { return std::make_unique<Equations>(Equations{std::move(filter)}); })),
-      combined_(C_.rows()) {
+      predicted_(C_.rows()),
+      innovation_(C_.rows()) {
   const Index n = bank.structure.dimension(), n_y = C_.rows();
   estimate_.prediction.resize(n);
   estimate_.innovation.resize(n_y);
@@ -107,9 +108,8 @@ void BankFilter::take(Filter& filter, const Vector& measurement) {
   if (std::isnan(estimate_.log_density)) {
     clear_scores();
   } else {
-    combined_.observe(C_, estimate_.prediction, estimate_.innovation_covariance, measurement);
-    estimate_.innovation = combined_.innovation;
-    estimate_.nis = combined_.nis;
+    small::multiply(predicted_, C_, estimate_.prediction);
+    innovation_.observe(predicted_, measurement, estimate_);
     filter.transform(measurement, estimate_.pit, estimate_.pit_width, estimate_.log_density);
   }
   record_posterior(filter);

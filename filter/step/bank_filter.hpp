@@ -42,37 +42,28 @@ struct StateForecast {
 /// Upper limit of normalised squares.
 inline constexpr double largest_nis = 1e300;
 
-/// The innovation of a predicted mixture, and its normalised square. Memory is allocated once.
-struct CombinedInnovation {
-  Eigen::VectorXd innovation;  ///< n_y, e = y - C x; NaN for missing signals
-  double nis = 0.0;            ///< e' S^-1 e of the available signals; NaN if there are none
+/// Computes the innovation of a predicted mixture, and its normalised square. Memory is allocated once.
+class CombinedInnovation {
+ public:
+  explicit CombinedInnovation(Eigen::Index n_y) : covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
 
-  explicit CombinedInnovation(Eigen::Index n_y)
-      : innovation(n_y), covariance_(n_y, n_y), residual_(n_y), cholesky_(n_y) {}
-
-  void observe(const Eigen::MatrixXd& C, const Eigen::VectorXd& x, const Eigen::MatrixXd& S,
-               const Eigen::Ref<const Eigen::VectorXd>& y) {
-    small::multiply(innovation, C, x);
-    innovation = y - innovation;
-    normalise(S, y);
-  }
-  /// The square of an `innovation` that is given.
-  void normalise(const Eigen::MatrixXd& S, const Eigen::Ref<const Eigen::VectorXd>& y) {
-    covariance_ = S;
-    residual_ = innovation;
+  /// Sets innovation and nis from `predicted`, which is C x, and the innovation covariance of the estimate.
+  void observe(const Eigen::VectorXd& predicted, const Eigen::Ref<const Eigen::VectorXd>& y, FilterEstimate& estimate) {
+    covariance_ = estimate.innovation_covariance;
+    residual_ = estimate.innovation = y - predicted;
     Eigen::Index missing = 0;
     for (Eigen::Index i = 0; i < y.size(); ++i)
       if (is_missing(y(i))) {
         detach(covariance_, i);
         residual_(i) = 0.0;
-        innovation(i) = not_a_number;
+        estimate.innovation(i) = not_a_number;
         ++missing;
       }
     cholesky_.factorise(covariance_);
     cholesky_.decorrelate(residual_);
-    nis = cholesky_.squared_distance(residual_);
-    if (!(nis < largest_nis)) nis = largest_nis;
-    if (missing == y.size()) nis = not_a_number;
+    estimate.nis = cholesky_.squared_distance(residual_);
+    if (!(estimate.nis < largest_nis)) estimate.nis = largest_nis;
+    if (missing == y.size()) estimate.nis = not_a_number;
   }
 
  private:
@@ -124,7 +115,8 @@ class BankFilter {
   Eigen::VectorXd initial_probability_;
   std::unique_ptr<Equations> equations_;
   FilterEstimate estimate_;
-  CombinedInnovation combined_;
+  Eigen::VectorXd predicted_;  ///< n_y, C x
+  CombinedInnovation innovation_;
   bool started_ = false;
 
   template <class Filter>

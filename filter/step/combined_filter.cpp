@@ -1,6 +1,5 @@
 #include "filter/step/combined_filter.hpp"
 
-#include <numeric>
 #include <utility>
 
 #include "filter/step/equations/arithmetic.hpp"
@@ -25,18 +24,41 @@ Bank combined_frame(const Bank& bank) {
   return frame;
 }
 
+namespace {
+
+/// The weights of the filters that speak, with sum one. The others have not started, or failed.
+template <class Speaks>
+void share_out(const std::vector<double>& weights, Speaks speaks, std::vector<double>& shares) {
+  double spoken = 0.0;
+  for (std::size_t i = 0; i < weights.size(); ++i) spoken += shares[i] = speaks(i) ? weights[i] : 0.0;
+  for (double& share : shares) share /= spoken;
+}
+
+/// Mean and covariance of the mixture of part(0), part(1), ..., each a mean and a covariance.
+template <class Part>
+void merge(const std::vector<double>& shares, Part part, Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) {
+  mean.setZero(part(0).first.size());
+  covariance.setZero(mean.size(), mean.size());
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (shares[i] != 0.0) mean += shares[i] * part(i).first;
+  for (std::size_t i = 0; i < shares.size(); ++i)
+    if (shares[i] != 0.0) small::add_about_mean(covariance, shares[i], part(i).second, part(i).first - mean);
+}
+
+}  // namespace
+
 CombinedFilter::CombinedFilter(std::vector<BankFilter> filters, const std::vector<double>& start)
     : filters_(std::move(filters)),
       combines_(true),
       weights_(start, 1),
       log_densities_(filters_.size()),
+      shares_(filters_.size()),
       estimate_(filters_.front().estimate()),
-      combined_(estimate_.innovation.size()),
-      apart_(estimate_.innovation) {
+      innovation_(estimate_.innovation.size()) {
   take_first();
 }
 
-CombinedFilter::CombinedFilter(BankFilter alone) : combines_(false), weights_(1), combined_(0) {
+CombinedFilter::CombinedFilter(BankFilter alone) : combines_(false), weights_(1), innovation_(0) {
   filters_.push_back(std::move(alone));
 }
 
@@ -72,37 +94,29 @@ void CombinedFilter::take_first() {
   estimate_.steps = said.steps;
 }
 
-/// Combines the filters with their weights before this sample, but those that have not started or have failed.
+/// Combines the filters with their weights before this sample.
 void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
   FilterEstimate& mixed = estimate_;
   const Index n = mixed.innovation.size();
+  const auto said = [&](std::size_t i) -> const FilterEstimate& { return filters_[i].estimate(); };
   mixed.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
-  double spoken = 0.0;
-  const auto each = [&](auto add) {
-    for (std::size_t i = 0; i < filters_.size(); ++i)
-      if (const FilterEstimate& said = filters_[i].estimate(); said.prediction.allFinite())
-        add(weights_.weights()[i], said);
-  };
-  each([&](double weight, const FilterEstimate&) { spoken += weight; });
-  if (!(spoken > 0.0)) return;
-  for (auto* vector : {&mixed.prediction, &mixed.state, &mixed.pit, &mixed.pit_width}) vector->setZero();
-  for (auto* matrix : {&mixed.innovation_covariance, &mixed.covariance}) matrix->setZero();
-  each([&](double weight, const FilterEstimate& said) {
-    mixed.prediction += weight / spoken * said.prediction.head(n);
-    mixed.state += weight / spoken * said.state.head(n);
-    mixed.pit += weight / spoken * said.pit;
-    mixed.pit_width += weight / spoken * said.pit_width;
-  });
-  each([&](double weight, const FilterEstimate& said) {
-    apart_ = said.prediction.head(n) - mixed.prediction;
-    small::add_about_mean(mixed.innovation_covariance, weight / spoken, said.innovation_covariance, apart_);
-    apart_ = said.state.head(n) - mixed.state;
-    small::add_about_mean(mixed.covariance, weight / spoken, said.covariance.topLeftCorner(n, n), apart_);
-  });
-  combined_.innovation = measurement - mixed.prediction;
-  combined_.normalise(mixed.innovation_covariance, measurement);
-  mixed.innovation = combined_.innovation;
-  mixed.nis = combined_.nis;
+  share_out(
+      weights_.weights(), [&](std::size_t i) { return said(i).prediction.allFinite(); }, shares_);
+  for (Eigen::VectorXd FilterEstimate::*transform : {&FilterEstimate::pit, &FilterEstimate::pit_width}) {
+    (mixed.*transform).setZero();
+    for (std::size_t i = 0; i < shares_.size(); ++i)
+      if (shares_[i] != 0.0) mixed.*transform += shares_[i] * (said(i).*transform);
+  }
+  merge(
+      shares_, [&](std::size_t i) { return std::pair(said(i).state.head(n), said(i).covariance.topLeftCorner(n, n)); },
+      mixed.state, mixed.covariance);
+  merge(
+      shares_,
+      [&](std::size_t i) {
+        return std::pair(said(i).prediction.head(n), said(i).innovation_covariance.topLeftCorner(n, n));
+      },
+      mixed.prediction, mixed.innovation_covariance);
+  innovation_.observe(mixed.prediction, measurement, mixed);
 }
 
 std::vector<StateForecast> CombinedFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
@@ -110,22 +124,16 @@ std::vector<StateForecast> CombinedFilter::forecast(const Eigen::Ref<const Eigen
   std::vector<StateForecast> mixed = filters_.front().forecast(inputs, steps);
   if (!combines_) return mixed;
   std::vector<std::vector<StateForecast>> said;
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < filters_.size(); ++i) {
-    if (!filters_[i].started()) continue;
-    said.push_back(filters_[i].forecast(inputs, steps));
-    weights.push_back(weights_.weights()[i]);
-  }
-  const double spoken = std::accumulate(weights.begin(), weights.end(), 0.0);
+  for (const BankFilter& filter : filters_) said.push_back(filter.forecast(inputs, steps));
   const Index n = estimate_.state.size();
-  const double value = said.empty() ? not_a_number : 0.0;
+  std::vector<double> shares(filters_.size());
   for (std::size_t k = 0; k < mixed.size(); ++k) {
-    Eigen::VectorXd& state = mixed[k].state.setConstant(n, value);
-    mixed[k].covariance.setConstant(n, n, value);
-    for (std::size_t i = 0; i < said.size(); ++i) state += weights[i] / spoken * said[i][k].state.head(n);
-    for (std::size_t i = 0; i < said.size(); ++i)
-      small::add_about_mean(mixed[k].covariance, weights[i] / spoken, said[i][k].covariance.topLeftCorner(n, n),
-                            said[i][k].state.head(n) - state);
+    share_out(
+        weights_.weights(), [&](std::size_t i) { return said[i][k].state.allFinite(); }, shares);
+    merge(
+        shares,
+        [&](std::size_t i) { return std::pair(said[i][k].state.head(n), said[i][k].covariance.topLeftCorner(n, n)); },
+        mixed[k].state, mixed[k].covariance);
   }
   return mixed;
 }

@@ -45,10 +45,9 @@ class CombinedFilter {
   std::vector<BankFilter> filters_;
   bool combines_;
   filter::ForecastWeights weights_;
-  std::vector<double> log_densities_;
+  std::vector<double> log_densities_, shares_;
   FilterEstimate estimate_;
-  CombinedInnovation combined_;
-  Eigen::VectorXd apart_;  ///< workspace of size n_y
+  CombinedInnovation innovation_;
 
   void take_first();
   void mix(const Eigen::Ref<const Eigen::VectorXd>& measurement);
