@@ -13,8 +13,7 @@ import house
 IDENT = ["ident/base", "ident/data", "ident/model"]
 FIT = IDENT + ["ident/model/models", "ident/fit"]
 STEP = IDENT + ["filter/step"]
-JUDGE = ["filter/judge/run", "filter/judge/score", "filter/judge/decide"]
-LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/learn", "filter/learn/chain"] + JUDGE
+LIBRARIES = FIT + ["ident/lag", "ident/terms", "ident/check", "ident/simulate", "mixture", "filter/step", "filter/judge", "filter/learn", "filter/learn/chain"]
 IO = ["io/files", "io/hdf5", "io/table", "io/csv", "io/arrays", "io/archive/groups", "io/archive/bank", "io/archive", "io/recording", "io/import", "io/simulation"]
 BELOW_APP = LIBRARIES + IO
 MAY_INCLUDE = {
@@ -29,11 +28,9 @@ MAY_INCLUDE = {
     "ident/simulate": IDENT,
     "mixture": IDENT,
     "filter/step": IDENT,
-    "filter/judge/run": STEP,
-    "filter/judge/score": STEP + ["filter/judge/run"],
-    "filter/judge/decide": STEP + ["filter/judge/run", "filter/judge/score"],
-    "filter/learn": FIT + ["mixture", "filter/step"] + JUDGE,
-    "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/learn"] + JUDGE,
+    "filter/judge": STEP,
+    "filter/learn": FIT + ["mixture", "filter/step", "filter/judge"],
+    "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/judge", "filter/learn"],
     "io/files": IDENT[:1],
     "io/hdf5": IDENT[:1],
     "io/table": IDENT[:1] + ["io/files"],
@@ -57,7 +54,7 @@ MAY_INCLUDE = {
     "python/bindings": BELOW_APP + [f"app/{room}" for room in ("config", "text", "chain")],
 }
 # Folders of the installed headers <modebank/NAME/...>.
-PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge/run",
+PUBLIC = {"base": "ident/base", "ident": "ident/model", "mixture": "mixture", "filter": "filter/step", "judge": "filter/judge",
           "learn": "filter/learn", "archive": "io/archive/bank"}
 INCLUDE = r'^\s*#\s*include "([^"]+)"'
 # The only detail shared by all kernels: use of the lanes of vector registers.

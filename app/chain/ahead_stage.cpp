@@ -8,8 +8,8 @@
 
 #include "app/chain/stages.hpp"
 #include "app/text/judged_runs.hpp"
-#include "filter/judge/run/horizon.hpp"
-#include "filter/judge/score/combination.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/judge/horizon.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 

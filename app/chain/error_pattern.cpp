@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/terms/selection.hpp"
 #include "ident/terms/term_rows.hpp"

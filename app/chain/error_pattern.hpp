@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank {

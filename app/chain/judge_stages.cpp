@@ -7,12 +7,12 @@
 
 #include "app/chain/stages.hpp"
 #include "app/config/free_run_check.hpp"
-#include "filter/judge/decide/diagnostics.hpp"
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/free_run.hpp"
-#include "filter/judge/score/combination.hpp"
-#include "filter/judge/score/scores.hpp"
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/model/residual_tests.hpp"
 

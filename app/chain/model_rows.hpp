@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 #include "io/archive/archive.hpp"
 
 /// Functions on the rows that an archive's evaluation has for each model.

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/score/combination.hpp"
+#include "filter/judge/combination.hpp"
 #include "filter/learn/chain/inputs.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_combination.hpp"

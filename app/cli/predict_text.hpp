@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/free_run.hpp"
 
 /// Output of `predict`. It omits samples without a prediction.
 namespace modebank::app {

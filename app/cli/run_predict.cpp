@@ -12,7 +12,7 @@
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/free_run_check.hpp"
-#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/free_run.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"

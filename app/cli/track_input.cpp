@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/step/equations/bounds.hpp"
+#include "filter/step/gaussian.hpp"
 #include "ident/base/characters.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "io/csv/csv_text.hpp"

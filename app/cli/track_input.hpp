@@ -7,7 +7,7 @@
 
 #include "app/cli/line_table.hpp"
 #include "app/config/config.hpp"
-#include "filter/step/feed/aligned_samples.hpp"
+#include "filter/step/aligned_samples.hpp"
 
 namespace modebank::app {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "app/cli/validity_flags.hpp"
-#include "filter/step/alarm.hpp"
 #include "filter/step/bank_filter.hpp"
+#include "filter/step/forecast.hpp"
 
 namespace modebank::app {
 

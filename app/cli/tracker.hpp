@@ -16,8 +16,8 @@
 #include "app/cli/track_output.hpp"
 #include "app/cli/validity_flags.hpp"
 #include "app/config/config.hpp"
-#include "filter/step/alarm.hpp"
-#include "filter/step/feed/aligned_samples.hpp"
+#include "filter/step/aligned_samples.hpp"
+#include "filter/step/forecast.hpp"
 #include "ident/data/trajectory.hpp"
 
 namespace modebank::app {

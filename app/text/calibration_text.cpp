@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "app/text/judged_runs.hpp"
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 
 namespace modebank::app {
 namespace {

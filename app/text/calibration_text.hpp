@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "app/text/errors_ahead.hpp"
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 
 /// Sentences on the stated uncertainty of a filter. Each is made from one row of /evaluation/diagnostics.
 namespace modebank::app {

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app {

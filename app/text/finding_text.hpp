@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 
 namespace modebank {
 

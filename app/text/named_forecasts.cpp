@@ -9,7 +9,7 @@
 #include <set>
 
 #include "app/text/judged_runs.hpp"
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 
 namespace modebank::app {
 namespace {

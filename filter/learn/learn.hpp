@@ -4,7 +4,7 @@
 #include <optional>
 #include <vector>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "filter/learn/tuning.hpp"
 #include "filter/step/bank.hpp"

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/pit_draw.hpp"
+#include "filter/step/forecast.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 

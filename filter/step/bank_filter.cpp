@@ -7,10 +7,9 @@
 #include <utility>
 #include <variant>
 
-#include "filter/step/drifting_filter.hpp"
-#include "filter/step/drifting_forecast.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/drifting.hpp"
 #include "filter/step/imm_filter.hpp"
+#include "filter/step/samples.hpp"
 
 namespace modebank {
 

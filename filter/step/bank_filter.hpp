@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "filter/step/bank.hpp"
-#include "filter/step/equations/arithmetic.hpp"
-#include "filter/step/equations/partial_sensor.hpp"
-#include "filter/step/feed/sample_feed.hpp"
+#include "filter/step/gaussian.hpp"
+#include "filter/step/kalman.hpp"
+#include "filter/step/samples.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"

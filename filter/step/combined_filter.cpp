@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "filter/step/equations/arithmetic.hpp"
+#include "filter/step/gaussian.hpp"
 
 namespace modebank {
 

@@ -1,9 +1,8 @@
-#include "filter/step/drifting_filter.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
+#include "filter/step/drifting.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {

@@ -1,10 +1,9 @@
-#include "filter/step/drifting_forecast.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "filter/step/equations/imm.hpp"
+#include "filter/step/drifting.hpp"
+#include "filter/step/imm.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {

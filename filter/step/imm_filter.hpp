@@ -9,14 +9,14 @@
 #include <tuple>
 #include <vector>
 
-#include "filter/step/equations/filter_step.hpp"
-#include "filter/step/equations/predicted_mixture.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/imm.hpp"
+#include "filter/step/predicted.hpp"
+#include "filter/step/samples.hpp"
 #include "ident/base/covariance.hpp"
 
 namespace modebank {
 
-/// The filter of a bank with the state and the workspace of a step, in fixed or dynamic size (equations/). Call `start`
+/// The filter of a bank with the state and the workspace of a step, in fixed or dynamic size (imm.hpp). Call `start`
 /// first, then `predict` and `update` for each sample. Nothing is allocated after construction.
 ///
 /// A copy of it is a forecast: `step` predicts on without measurements. As in the filter, the Gaussians of the modes
@@ -62,7 +62,7 @@ class ImmFilter {
   void combine(Eigen::VectorXd& state, Eigen::MatrixXd& innovation_covariance) {
     modebank::combine(*model_, step_, state, innovation_covariance);
   }
-  /// Probability integral transform of y (predicted_mixture.hpp), n_y. Call after `update` with the same y.
+  /// Probability integral transform of y (predicted.hpp), n_y. Call after `update` with the same y.
   /// `log_density`: that of `update`; if signals are rounded it becomes that of their intervals.
   void transform(const Vector& y, Eigen::VectorXd& pit, Eigen::VectorXd& width, double& log_density) {
     const double of_intervals = probability_transform(*model_, y, step_, weights_, pit, width);

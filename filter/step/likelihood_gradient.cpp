@@ -5,8 +5,8 @@
 #include <utility>
 #include <vector>
 
-#include "filter/step/equations/filter_step.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/imm.hpp"
+#include "filter/step/samples.hpp"
 
 namespace modebank {
 namespace {

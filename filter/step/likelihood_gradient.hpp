@@ -33,7 +33,7 @@ bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options);
 
 /// The gradient of sum_k log p(y_k | earlier) of one run. It is the exact derivative of the filter's
 /// computation. It costs a few filter passes for any number of parameters (reverse-mode differentiation; Griewank &
-/// Walther 2008, "Evaluating derivatives"). The conditions are those of log_likelihood (filter/judge/run/evaluate.hpp)
+/// Walther 2008, "Evaluating derivatives"). The conditions are those of log_likelihood (filter/judge/evaluate.hpp)
 /// and has_likelihood_gradient.
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options);
 

@@ -8,13 +8,13 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/decide/diagnostics.hpp"
-#include "filter/judge/decide/finding.hpp"
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/free_run.hpp"
-#include "filter/judge/run/horizon.hpp"
-#include "filter/judge/score/combination.hpp"
-#include "filter/judge/score/scores.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/finding.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/scores.hpp"
 #include "filter/learn/chain/parts.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/run_labels.hpp"

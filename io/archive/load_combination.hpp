@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "filter/judge/score/combination.hpp"
+#include "filter/judge/combination.hpp"
 #include "io/archive/bank/open_archive.hpp"
 
 namespace modebank {

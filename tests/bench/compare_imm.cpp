@@ -10,9 +10,9 @@
 #include <functional>
 #include <numbers>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/equations/filter_step.hpp"
+#include "filter/step/imm.hpp"
 #include "tests/bench/bench_data.hpp"
 
 namespace {

@@ -9,7 +9,7 @@
 #include <random>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/drifting_filter.hpp"
+#include "filter/step/drifting.hpp"
 #include "ident/data/trajectory.hpp"
 
 namespace modebank::test {

@@ -4,7 +4,7 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 #include "ident/data/public_recording.hpp"
 #include "tests/filter/public_bank.hpp"
 

@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/score/paired_gain.hpp"
+#include "filter/judge/paired_gain.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app::report {

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank {

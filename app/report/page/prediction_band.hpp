@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/step/bank.hpp"
 
 namespace modebank {

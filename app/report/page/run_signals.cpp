@@ -8,7 +8,7 @@
 #include "app/report/page/run_sections.hpp"
 #include "app/report/page/series.hpp"
 #include "app/report/page/unit_text.hpp"
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/base/distributions.hpp"
 
 namespace modebank::app::report {

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "app/study/answers/study_table.hpp"
-#include "filter/judge/score/scores.hpp"
+#include "filter/judge/scores.hpp"
 
 /// Answers that are computed from a study's table. A *setting* is one combination of varied values; its repeats differ
 /// only in the seed. Only finished trials count. This file neither reads files nor prints.

@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 #include "filter/learn/chain/training_check.hpp"
 #include "filter/learn/from_mixture/cluster_windows.hpp"
 #include "ident/fit/global_model.hpp"

@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
-#include "filter/judge/run/horizon.hpp"
-#include "filter/judge/score/combination.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "filter/learn/learn.hpp"

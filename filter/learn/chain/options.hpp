@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/free_run.hpp"
 #include "filter/learn/competitors/noise_by_input.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/armax.hpp"

@@ -4,8 +4,8 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/score/combination.hpp"
-#include "filter/judge/score/scores.hpp"
+#include "filter/judge/combination.hpp"
+#include "filter/judge/scores.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/fit/fit_windows.hpp"

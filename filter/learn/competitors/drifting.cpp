@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/run/forecast.hpp"
+#include "filter/judge/forecast.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"

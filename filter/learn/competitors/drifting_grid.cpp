@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "filter/learn/competitors/drifting.hpp"
-#include "filter/step/drifting_filter.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/drifting.hpp"
 #include "filter/step/noise_density.hpp"
+#include "filter/step/samples.hpp"
 #include "ident/base/work_counter.hpp"
 #include "modebank/base/error.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "filter/step/noise_factor.hpp"
+#include "filter/step/bank.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/linear_model.hpp"

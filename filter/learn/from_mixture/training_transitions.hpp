@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "filter/step/noise_factor.hpp"
+#include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/transitions.hpp"

@@ -9,8 +9,8 @@
 #include <utility>
 #include <vector>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/forecast.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/forecast.hpp"
 
 namespace modebank {
 

@@ -8,7 +8,7 @@
 
 namespace modebank {
 
-/// Decides whether transition probabilities depend on state and input (transition_logit.hpp), and how strongly.
+/// Decides whether transition probabilities depend on state and input (step/bank.hpp), and how strongly.
 /// 1. Every start's fit with constant T continues as a logit on all training runs.
 /// 2. The most likely of these fits is also tried with fewer modes, by merging one pair of modes after another.
 ///    These models then come from the same optimum. This matters because a logit has many separate optima. On one dead

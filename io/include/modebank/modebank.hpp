@@ -16,8 +16,6 @@
 #include "modebank/filter/bank_filter.hpp"
 #include "modebank/filter/forecast_weights.hpp"
 #include "modebank/filter/options.hpp"
-#include "modebank/filter/screened_mode.hpp"
-#include "modebank/filter/wandering.hpp"
 #include "modebank/ident/auto_diff_motion_model.hpp"
 #include "modebank/ident/input_delays.hpp"
 #include "modebank/ident/motion_model.hpp"

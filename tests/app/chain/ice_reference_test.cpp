@@ -5,7 +5,7 @@
 
 #include "app/chain/chain.hpp"
 #include "app/config/config.hpp"
-#include "filter/judge/score/scores.hpp"
+#include "filter/judge/scores.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"

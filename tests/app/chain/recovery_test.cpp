@@ -7,7 +7,7 @@
 #include <numeric>
 #include <vector>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/simulate/simulate.hpp"

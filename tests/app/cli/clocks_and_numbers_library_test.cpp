@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filter/step/equations/bounds.hpp"
+#include "filter/step/gaussian.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/unidentifiable_regressors.hpp"

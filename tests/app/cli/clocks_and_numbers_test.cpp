@@ -7,7 +7,7 @@
 
 #include "app/text/mode_dynamics.hpp"
 #include "app/text/mode_tables.hpp"
-#include "filter/step/equations/bounds.hpp"
+#include "filter/step/gaussian.hpp"
 #include "io/archive/archive.hpp"
 #include "io/import/value_check.hpp"
 #include "tests/app/cli_fixture.hpp"

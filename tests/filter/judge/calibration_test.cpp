@@ -1,5 +1,5 @@
 // Verdicts on filters for simulated data, and the intervals behind these verdicts.
-#include "filter/judge/decide/calibration.hpp"
+#include "filter/judge/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <map>
 #include <random>
 
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

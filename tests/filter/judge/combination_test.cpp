@@ -1,5 +1,5 @@
 // Forecasts of several filters, combined by their past success.
-#include "filter/judge/score/combination.hpp"
+#include "filter/judge/combination.hpp"
 
 #include <gtest/gtest.h>
 

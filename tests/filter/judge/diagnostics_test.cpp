@@ -1,12 +1,12 @@
 // Diagnostics on simulated data: a correct filter passes, and a wrong filter fails.
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 

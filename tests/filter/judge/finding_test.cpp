@@ -1,5 +1,5 @@
 // The finding about modes of motion, from scores for which the answer is known.
-#include "filter/judge/decide/finding.hpp"
+#include "filter/judge/finding.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/run/free_run.hpp"
-#include "filter/judge/run/sample_paths.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/sample_paths.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/free_run_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"

@@ -1,12 +1,12 @@
 // Predictions without measurements up to the end of a run.
-#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/free_run.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/free_run_test_support.hpp"

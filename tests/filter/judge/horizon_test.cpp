@@ -8,8 +8,9 @@
 #include <random>
 #include <vector>
 
-#include "filter/judge/run/forecast.hpp"
-#include "filter/step/drifting_forecast.hpp"
+#include "filter/judge/forecast.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/step/drifting.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"

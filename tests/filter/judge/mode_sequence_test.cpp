@@ -3,8 +3,8 @@
 
 #include <cmath>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/step/feed/sample_feed.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/step/samples.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank {

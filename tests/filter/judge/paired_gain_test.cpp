@@ -1,5 +1,5 @@
 // Gains and their standard errors: closed forms, and simulated series for which the variance of the mean is known.
-#include "filter/judge/score/paired_gain.hpp"
+#include "filter/judge/paired_gain.hpp"
 
 #include <gtest/gtest.h>
 

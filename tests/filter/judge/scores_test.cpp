@@ -1,10 +1,10 @@
-#include "filter/judge/score/scores.hpp"
+#include "filter/judge/scores.hpp"
 
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "tests/filter/filter_test_support.hpp"

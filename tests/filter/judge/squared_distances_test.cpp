@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
-#include "filter/judge/decide/diagnostics.hpp"
-#include "filter/judge/score/scores.hpp"
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/diagnostics.hpp"
+#include "filter/judge/scores.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 

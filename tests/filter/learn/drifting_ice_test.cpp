@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/learn/competitors/drifting.hpp"
 #include "ident/fit/global_model.hpp"
 #include "io/import/import.hpp"

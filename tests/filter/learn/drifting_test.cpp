@@ -7,8 +7,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/judge/run/horizon.hpp"
-#include "filter/learn/competitors/drifting.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/noise_density.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/filter/drifting_test_support.hpp"

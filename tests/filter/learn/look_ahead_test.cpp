@@ -1,8 +1,8 @@
 // Look-ahead learning: its scores, and the prior towards one motion.
 #include <cmath>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"

@@ -9,9 +9,9 @@
 #include <numbers>
 #include <random>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/free_run.hpp"
-#include "filter/judge/run/sample_paths.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_run.hpp"
+#include "filter/judge/sample_paths.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/likelihood_gradient.hpp"

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <random>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/free_run.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/free_run.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "ident/data/stretch.hpp"
 #include "tests/filter/free_run_test_support.hpp"

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/decide/diagnostics.hpp"
+#include "filter/judge/diagnostics.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "tests/filter/filter_test_support.hpp"

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 

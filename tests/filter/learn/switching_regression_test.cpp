@@ -11,7 +11,7 @@
 #include <numbers>
 #include <random>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank_frame.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"

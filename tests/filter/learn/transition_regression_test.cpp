@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/learn/likelihood/information.hpp"
 #include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/learn/switching/em.hpp"

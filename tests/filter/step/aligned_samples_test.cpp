@@ -1,5 +1,5 @@
 // Live samples and whole runs must be aligned in the same way, by holding and interpolation.
-#include "filter/step/feed/aligned_samples.hpp"
+#include "filter/step/aligned_samples.hpp"
 
 #include <gtest/gtest.h>
 

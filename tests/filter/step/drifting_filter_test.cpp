@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <vector>
 
-#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/samples.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"

@@ -5,11 +5,11 @@
 #include <stdexcept>
 #include <vector>
 
-#include "filter/judge/run/horizon.hpp"
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/feed/run_samples.hpp"
 #include "filter/step/noise_density.hpp"
+#include "filter/step/samples.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/judge/run/horizon.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/combined_filter.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"

@@ -1,10 +1,10 @@
 // The filter must not return NaN for any input. Fixed and dynamic sizes must give the same bits.
 #include <gtest/gtest.h>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/equations/filter_step.hpp"
-#include "filter/step/feed/run_samples.hpp"
+#include "filter/step/imm.hpp"
+#include "filter/step/samples.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/effort.hpp"

@@ -1,12 +1,12 @@
-// Filters of rounded measurements: R of at least q^2 / 12, and scores by masses (equations/predicted_mixture.hpp).
+// Filters of rounded measurements: R of at least q^2 / 12, and scores by masses (predicted.hpp).
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "filter/judge/run/evaluate.hpp"
-#include "filter/judge/run/horizon.hpp"
-#include "filter/judge/score/statistics.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/judge/horizon.hpp"
+#include "filter/judge/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Independent reference for `drifting` with noise levels (filter/step/drifting_filter.hpp), scalar y.
+"""Independent reference for `drifting` with noise levels (filter/step/drifting.hpp), scalar y.
 
     /usr/bin/python3 tests/golden/generate/drifting_levels.py      writes drifting_levels.json into data/
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>
 
-#include "filter/judge/run/evaluate.hpp"
+#include "filter/judge/evaluate.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "ident/fit/fit_windows.hpp"

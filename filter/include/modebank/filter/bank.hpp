@@ -6,12 +6,32 @@
 #include <vector>
 
 #include "modebank/base/matrix.hpp"
-#include "modebank/filter/wandering.hpp"
+#include "modebank/base/names.hpp"
 #include "modebank/ident/input_delays.hpp"
 
 namespace modebank {
+
 struct Bank;
-}
+
+/// Which coefficients of a mode drift. all: each coefficient independently. constant: only the constant. gain: one
+/// common factor on all input coefficients, so their ratios do not change. With constant and gain, the other
+/// coefficients are learned within a run from their starting variance.
+enum class Wandering { all, constant, gain };
+
+template <>
+struct EnumNames<Wandering> {
+  static constexpr Names<3> values{"all", "constant", "gain"};
+};
+
+/// A mode that was removed from a bank, with the reason.
+struct ScreenedMode {
+  std::ptrdiff_t component = 0;  ///< index of its component in the mixture
+  double weight = 0.0;           ///< share of the windows that belong to the mode
+  double spectral_radius = 0.0;  ///< spectral radius of I + A
+  std::string reason;            ///< "starved", "unstable" or "duplicate of mode 1"
+};
+
+}  // namespace modebank
 
 namespace modebank::filter {
 

@@ -6,7 +6,6 @@
 
 #include "modebank/base/recording.hpp"
 #include "modebank/filter/bank.hpp"
-#include "modebank/filter/screened_mode.hpp"
 #include "modebank/ident/motion_model.hpp"
 #include "modebank/learn/options.hpp"
 #include "modebank/learn/results.hpp"

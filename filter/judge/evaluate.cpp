@@ -1,0 +1,156 @@
+#include "filter/judge/evaluate.hpp"
+
+#include <cmath>
+
+#include "filter/step/forecast.hpp"
+#include "filter/step/imm_filter.hpp"
+#include "filter/step/samples.hpp"
+#include "ident/data/public_recording.hpp"
+#include "modebank/base/eigen.hpp"
+#include "modebank/judge/evaluate.hpp"
+
+namespace modebank {
+
+namespace {
+
+using Eigen::Index;
+
+RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
+  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
+  RunEvaluation e;
+  e.prediction.resize(n, samples);
+  e.innovation.resize(n_y, samples);
+  e.innovation_covariance.resize(n_y * n_y, samples);
+  e.state.resize(n, samples);
+  e.covariance.resize(n * n, samples);
+  e.nis.resize(samples);
+  e.pit.resize(n_y, samples);
+  if (bank.is_quantised()) e.pit_width.setZero(n_y, samples);
+  e.log_density.resize(samples);
+  e.mode_probability_predicted.resize(K, samples);
+  e.mode_probability.resize(K, samples);
+  return e;
+}
+
+void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
+  const Index n = e.state.rows();
+  e.prediction.col(k) = estimate.prediction.head(n);
+  e.innovation.col(k) = estimate.innovation;
+  e.innovation_covariance.col(k) = estimate.innovation_covariance.reshaped();
+  e.state.col(k) = estimate.state.head(n);
+  e.covariance.col(k) = estimate.covariance.topLeftCorner(n, n).reshaped();
+  e.nis(k) = estimate.nis;
+  e.pit.col(k) = estimate.pit;
+  if (e.pit_width.size() > 0) e.pit_width.col(k) = estimate.pit_width;
+  e.log_density(k) = estimate.log_density;
+  e.mode_probability_predicted.col(k) = estimate.mode_probability_predicted;
+  e.mode_probability.col(k) = estimate.mode_probability;
+}
+
+/// `bank`: any bank with the sizes of the filter's results.
+template <class Filter>
+RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
+  RunEvaluation evaluation = sized_evaluation(bank, run.samples());
+  for (Index k = 0; k < run.samples(); ++k)
+    record(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), k, evaluation);
+  return evaluation;
+}
+
+}  // namespace
+
+RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  return evaluate_samples(bank, BankFilter(bank, options), run);
+}
+
+RunEvaluation evaluate_run(const Bank& frame, const Trajectory& run, CombinedFilter& filter) {
+  check_run(frame, run);
+  return evaluate_samples(frame, filter, run);
+}
+
+void draw_pit(const Trajectory& run, std::uint64_t seed, RunEvaluation& evaluation) {
+  if (evaluation.pit_width.size() == 0) return;
+  const std::uint64_t of_run = pit_seed(seed, run.run);
+  for (Index k = 0; k < evaluation.pit.cols(); ++k)
+    draw_pit(of_run, k, evaluation.pit_width.col(k), evaluation.pit.col(k));
+}
+
+double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  double sum = 0.0;
+  for (const double value : log_densities(bank, run, options)) sum += std::isnan(value) ? 0.0 : value;
+  return sum;
+}
+
+namespace {
+
+/// The mode of every moment. The forward pass keeps the log probability `score` of the best sequence that ends in each
+/// mode, and the mode before.
+template <int N, int NY>
+Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
+                              const FilterOptions& options) {
+  ImmFilter<N, NY> filter(bank, options);
+  const FilterModel<N, NY>& model = filter.model();
+  if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
+  const Index K = model.mode_count();
+  Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
+  Eigen::VectorXi best(instants.count());
+  Eigen::MatrixXd log_T = model.transition.matrix().array().log();
+  Eigen::VectorXd score(K), next(K);
+  for (Index t = 0; t < instants.count(); ++t) {
+    const bool starts = instants.instants[static_cast<std::size_t>(t)].starts;
+    if (!starts && !model.transition_logit.empty()) log_T = filter.transition(instants.inputs.col(t)).array().log();
+    const bool measured = !std::isnan(follow(instants, t, run, filter));
+    for (Index j = 0; j < K && !starts; ++j) {
+      Index before = j;
+      next(j) = (score + log_T.col(j)).maxCoeff(&before);
+      from(j, t) = static_cast<int>(before);
+      if (measured) next(j) += filter.log_likelihood()(j);
+    }
+    if (starts) next = model.initial_probability.array().max(mode_probability_floor).log();
+    score = next.array() - next.maxCoeff();
+    score.maxCoeff(&best(t));
+  }
+  Eigen::VectorXi mode(instants.count());
+  for (Index t = instants.count() - 1; t >= 0; --t)
+    mode(t) = instants.continues(t) ? from(mode(t + 1), t + 1) : best(t);
+  return mode;
+}
+
+}  // namespace
+
+Eigen::VectorXi mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  check_run(bank, run);
+  const RunInstants instants(bank, run);
+  FilterOptions judged = options;
+  // The mixing of salvi2025, as printed, does not keep even a known state.
+  if (judged.variant == FilterVariant::salvi2025) judged.variant = FilterVariant::imm;
+  const Eigen::VectorXi modes = with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
+    return best_sequence<N, NY>(bank, run, instants, judged);
+  });
+  Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
+  for (Index t = 0; t < instants.count(); ++t)
+    if (const Index sample = instants.instants[static_cast<std::size_t>(t)].sample; sample >= 0)
+      sequence(sample) = modes(t);
+  return sequence;
+}
+
+}  // namespace modebank
+
+// The public API of scoring: converts between plain vectors and Eigen.
+namespace modebank::judge {
+
+Evaluation evaluate_run(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options,
+                        std::uint64_t seed) {
+  const Trajectory trajectory = to_trajectory(run, bank.measurements(), bank.inputs());
+  RunEvaluation e = modebank::evaluate_run(bank.internal(), trajectory, options);
+  draw_pit(trajectory, seed, e);
+  return {to_matrix(e.prediction), to_matrix(e.innovation),  to_matrix(e.innovation_covariance),
+          to_matrix(e.state),      to_matrix(e.covariance),  to_vector(e.nis),
+          to_matrix(e.pit),        to_vector(e.log_density), to_matrix(e.mode_probability)};
+}
+
+double log_likelihood(const filter::Bank& bank, const RecordedRun& run, const FilterOptions& options) {
+  return modebank::log_likelihood(bank.internal(), to_trajectory(run, bank.measurements(), bank.inputs()), options);
+}
+
+}  // namespace modebank::judge

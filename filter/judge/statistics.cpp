@@ -1,0 +1,299 @@
+#include "filter/judge/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "ident/base/distributions.hpp"
+#include "ident/base/lagged_product.hpp"
+#include "ident/base/not_a_number.hpp"
+
+namespace modebank {
+
+namespace {
+
+Eigen::VectorXi likeliest_modes(const RunEvaluation& e) {
+  Eigen::VectorXi modes = Eigen::VectorXi::Zero(e.log_density.size());
+  if (e.mode_probability_predicted.rows() < 2) return modes;
+  for (Eigen::Index k = 0; k < modes.size(); ++k)
+    if (!std::isnan(e.log_density(k))) e.mode_probability_predicted.col(k).maxCoeff(&modes(k));
+  return modes;
+}
+
+}  // namespace
+
+Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
+  return pit.unaryExpr([](double value) { return std::isnan(value) ? not_a_number : normal_score(value); });
+}
+
+RunScores score_run(const RunEvaluation& e) {
+  RunScores scores;
+  scores.likeliest = likeliest_modes(e);
+  scores.z = normal_scores(e.pit);
+  OutputSeries z(static_cast<std::size_t>(e.pit.rows()));
+  for (Eigen::Index k = 0; k < e.log_density.size(); ++k)
+    if (!std::isnan(e.log_density(k)))
+      for (std::size_t i = 0; i < z.size(); ++i)
+        if (const double score = scores.z(static_cast<Eigen::Index>(i), k); !std::isnan(score)) z[i].push_back(score);
+  scores.whiteness_p = whiteness_p(z);
+  return scores;
+}
+
+std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
+  std::vector<RunScores> scores;
+  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
+  return scores;
+}
+
+ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
+  // Sample k + 1 is the end of transition k, whose input is u[k].
+  return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
+}
+
+namespace {
+
+/// The runs of a series, relative to the mean of all runs.
+class CentredSeries {
+ public:
+  explicit CentredSeries(const SeriesByRun& series) {
+    const double mean = mean_of(series);
+    for (const std::vector<double>& x : series)
+      runs_.emplace_back(Eigen::Map<const Eigen::ArrayXd>(x.data(), std::ssize(x)) - mean);
+  }
+
+  Eigen::Index longest() const {
+    Eigen::Index samples = 0;
+    for (const Eigen::ArrayXd& run : runs_) samples = std::max(samples, run.size());
+    return samples;
+  }
+
+  /// Sum of the products of values `lag` samples apart within one run.
+  double autocovariance(Eigen::Index lag) const {
+    double sum = 0.0;
+    for (const Eigen::ArrayXd& run : runs_) sum += lagged_product(run, run, lag);
+    return sum;
+  }
+
+ private:
+  std::vector<Eigen::ArrayXd> runs_;
+};
+
+}  // namespace
+
+double whiteness_p(const OutputSeries& z) {
+  std::vector<double> p_values;
+  for (const std::vector<double>& output : z) p_values.push_back(ljung_box_p(output));
+  return fisher_p(p_values);
+}
+
+double kolmogorov_distance(std::vector<double> values) {
+  if (values.empty()) return not_a_number;
+  std::sort(values.begin(), values.end());
+  const double count = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double below = static_cast<double>(i) / count, above = static_cast<double>(i + 1) / count;
+    distance = std::max({distance, above - values[i], values[i] - below});
+  }
+  return distance;
+}
+
+double ljung_box_p(const std::vector<double>& series) {
+  const CentredSeries centred({series});
+  const Eigen::Index N = static_cast<Eigen::Index>(series.size()),
+                     lags = std::min<Eigen::Index>(most_tested_lags, N / 5);
+  const double variance = centred.autocovariance(0);
+  if (lags < 1 || !(variance > 0.0)) return not_a_number;
+  Eigen::VectorXd autocorrelation(lags + 1);
+  for (Eigen::Index k = 0; k <= lags; ++k) autocorrelation(k) = centred.autocovariance(k) / variance;
+  return ljung_box_p(autocorrelation, N);
+}
+
+double fisher_p(const std::vector<double>& p_values) {
+  double statistic = 0.0, degrees_of_freedom = 0.0;
+  for (const double p : p_values) {
+    if (std::isnan(p)) continue;
+    statistic -= 2.0 * std::log(std::max(p, std::numeric_limits<double>::min()));
+    degrees_of_freedom += 2.0;
+  }
+  return degrees_of_freedom > 0.0 ? chi_square_upper_tail(statistic, degrees_of_freedom) : not_a_number;
+}
+
+namespace {
+
+constexpr double outer_tail = 0.025;
+constexpr double root_two_pi = 2.506628274631000502415765284811;
+constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
+constexpr double negligible = 1e-10;  // terms with a smaller power of the correlation are left out of the sum
+
+/// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs are positive. The first pair includes lag
+/// 0.
+std::vector<double> autocorrelations(const SeriesByRun& series) {
+  const CentredSeries centred(series);
+  std::vector<double> result;
+  const double variance = centred.autocovariance(0);
+  if (!(variance > 0.0)) return result;
+  for (Eigen::Index lag = 0; lag + 1 < centred.longest(); lag += 2) {
+    const double even = lag == 0 ? variance : centred.autocovariance(lag), odd = centred.autocovariance(lag + 1);
+    if (even + odd <= 0.0) break;
+    if (lag > 0) result.push_back(even / variance);
+    result.push_back(odd / variance);
+  }
+  return result;
+}
+
+double time_of(const std::vector<double>& correlations) {
+  double time = 1.0;
+  for (const double r : correlations) time += 2.0 * r;
+  return std::max(1.0, time);
+}
+
+/// Replaces every value by the normal quantile of its rank among all.
+SeriesByRun normal_scores(SeriesByRun series) {
+  std::vector<double*> order;
+  for (auto& x : series)
+    for (double& value : x) order.push_back(&value);
+  std::stable_sort(order.begin(), order.end(), [](const double* a, const double* b) { return *a < *b; });
+  const auto count = static_cast<double>(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i) *order[i] = normal_score((static_cast<double>(i) + 0.5) / count);
+  return series;
+}
+
+/// Correlation of the indicators that two standard normal variables of correlation r exceed the `outer_tail` quantile
+/// q: sum over j of r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (outer_tail (1 - outer_tail)).
+double tail_correlation(double r) {
+  r = std::clamp(r, -near_one, near_one);
+  const double q = normal_score(1.0 - outer_tail);
+  const double density = std::exp(-0.5 * q * q) / root_two_pi;
+  // Hermite polynomials of order j - 1, divided by the square root of (j-1)!
+  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;
+  for (double j = 1.0; std::abs(power) > negligible; ++j, power *= r) {
+    sum += power * hermite * hermite / j;
+    before = std::exchange(hermite, (q * hermite - std::sqrt(j - 1.0) * before) / std::sqrt(j));
+  }
+  return sum * density * density / (outer_tail * (1.0 - outer_tail));
+}
+
+}  // namespace
+
+double sample_count(const SeriesByRun& series) {
+  double count = 0.0;
+  for (const auto& x : series) count += static_cast<double>(x.size());
+  return count;
+}
+
+double sum_of(const SeriesByRun& series) {
+  double sum = 0.0;
+  for (const auto& x : series)
+    for (const double value : x) sum += value;
+  return sum;
+}
+
+double mean_of(const SeriesByRun& series) {
+  const double count = sample_count(series);
+  return count > 0.0 ? sum_of(series) / count : not_a_number;
+}
+
+Autocorrelation largest_autocorrelation(const SeriesByRun& series, Eigen::Index most) {
+  const CentredSeries centred(series);
+  Autocorrelation largest;
+  const double variance = centred.autocovariance(0);
+  const auto lags = std::min(most, static_cast<Eigen::Index>(sample_count(series)) / 5);
+  for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
+    if (const double value = centred.autocovariance(lag) / variance; std::abs(value) > std::abs(largest.value))
+      largest = {lag, value};
+  return largest;
+}
+
+double autocorrelation_time(const SeriesByRun& series) {
+  return std::isnan(mean_of(series)) ? not_a_number : time_of(autocorrelations(series));
+}
+
+double autocorrelation_time_of_tail(const SeriesByRun& series) {
+  if (sample_count(series) == 0.0) return not_a_number;
+  std::vector<double> correlations = autocorrelations(normal_scores(series));
+  for (double& r : correlations) r = tail_correlation(r);
+  return time_of(correlations);
+}
+
+double cautious_time(double time, double samples) {
+  return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
+}
+
+namespace {
+
+/// Mean distance per degree of freedom.
+double mean_per_degree(const SquaredDistances& d) {
+  return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
+}
+
+/// Deviation of each distance from its expected size, which is its degrees times the mean per degree. The mean of all
+/// deviations is zero.
+SeriesByRun deviations(const SquaredDistances& d) {
+  const double share = mean_per_degree(d);
+  SeriesByRun result = d.value;
+  for (std::size_t r = 0; r < result.size(); ++r)
+    for (std::size_t k = 0; k < result[r].size(); ++k) result[r][k] -= share * d.degrees[r][k];
+  return result;
+}
+
+}  // namespace
+
+void SquaredDistances::begin_run() {
+  value.emplace_back();
+  degrees.emplace_back();
+}
+
+void SquaredDistances::add(double distance, Eigen::Index d) {
+  if (d == 0) return;
+  value.back().push_back(distance);
+  degrees.back().push_back(static_cast<double>(d));
+}
+
+Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample) {
+  return (!evaluation.pit.col(sample).array().isNaN()).count();
+}
+
+double mean_distance(const SquaredDistances& distances, double of_all) { return of_all * mean_per_degree(distances); }
+
+Interval mean_distance_interval(const SquaredDistances& distances, double of_all, double level) {
+  const double count = sample_count(distances.value);
+  if (count == 0.0) return {not_a_number, not_a_number};
+  const double time = cautious_time(autocorrelation_time(deviations(distances)), count);
+  const double total = std::max(1.0, sum_of(distances.degrees) / time), outside = 0.5 * (1.0 - level);
+  return {of_all * chi_square_quantile(outside, total) / total,
+          of_all * chi_square_quantile(1.0 - outside, total) / total};
+}
+
+Eigen::VectorXd nis_of_all_signals(const RunEvaluation& e) {
+  const Eigen::Index all = e.pit.rows();
+  Eigen::VectorXd nis = e.nis;
+  for (Eigen::Index k = 0; k < nis.size(); ++k) {
+    const Eigen::Index there = scored_signals(e, k);
+    if (there == 0 || there == all || std::isnan(nis(k))) continue;
+    const double beyond = chi_square_upper_tail(nis(k), static_cast<double>(there));
+    if (beyond > 0.0) nis(k) = chi_square_upper_quantile(beyond, static_cast<double>(all));
+  }
+  return nis;
+}
+
+Interval binomial_interval(double count, double samples, double level) {
+  if (!(samples > 0.0)) return {not_a_number, not_a_number};
+  const double misses = std::max(0.0, samples - count), beyond = 0.5 * (1.0 - level);
+  return {count > 0.0 ? beta_quantile(beyond, count, misses + 1.0) : 0.0,
+          misses > 0.0 ? beta_quantile(1.0 - beyond, count + 1.0, misses) : 1.0};
+}
+
+ScoreBands::ScoreBands()
+    : near_square_(chi_square_quantile(true_tail, 1.0)), far_square_(chi_square_quantile(1.0 - true_tail, 1.0)) {
+  for (std::size_t b = 0; b < edges_.size(); ++b) edges_[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
+}
+
+ScoreBands::Hits ScoreBands::of(double z) const {
+  Hits hits{{}, z * z > far_square_, z * z < near_square_};
+  for (std::size_t b = 0; b < edges_.size(); ++b) hits.outside[b] = std::abs(z) > edges_[b];
+  return hits;
+}
+
+}  // namespace modebank

@@ -1,0 +1,275 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+/// Gaussians, products and factorisations of small matrices without allocation, and the limits that keep a filter's
+/// arithmetic stable for any input.
+namespace modebank {
+
+/// Lower bound of mode probabilities after a measurement, so that every mode can recover. Probabilities are then
+/// renormalised.
+inline constexpr double mode_probability_floor = 1e-12;
+
+/// A mode with a smaller probability before a measurement is impossible (T forbids it). The filter skips such a mode.
+inline constexpr double impossible_probability = 1e-100;
+
+/// Upper bound of variances in a diverging prediction, so that squares stay finite. Means are bounded by the square
+/// root of this bound.
+inline constexpr double largest_variance = 1e60;
+inline constexpr double largest_mean = 1e30;
+
+/// Smallest variance. It is used if S = 0. The standard deviation is 1e-20 in the signal's unit.
+inline constexpr double least_variance = 1e-40;
+
+/// Lower bound of log densities.
+inline constexpr double lowest_log_density = -1e300;
+
+/// Log density of a measurement. NaN, from an overflow, has the lowest value, too: a filter that failed at a sample is
+/// not one that did not measure it.
+inline double measured_density(double value) { return value > lowest_log_density ? value : lowest_log_density; }
+
+/// A measurement counts as missing if it is NaN, infinite, or at least this large.
+inline constexpr double largest_measurement = 1e30;
+
+inline bool is_missing(double y) { return !(std::abs(y) < largest_measurement); }
+
+/// Number of missing entries in a measurement.
+template <class Y>
+auto missing_entries(const Y& y) {
+  decltype(y.size()) count = 0;
+  for (decltype(y.size()) i = 0; i < y.size(); ++i) count += is_missing(y(i)) ? 1 : 0;
+  return count;
+}
+
+/// Smallest pivot of a covariance, as a share of its diagonal entry. Smaller pivots are rounding errors. Raising a
+/// pivot to this bound is the same as adding the difference to the diagonal.
+inline constexpr double relative_pivot_floor = 1e-14;
+
+/// Eigen sums in different orders for fixed and dynamic sizes. Here the order of summation is fixed, so both give the
+/// same bits.
+namespace small {
+
+using Eigen::Index;
+
+/// A number of rows or columns that matter. Fixed sizes take all, so that loops have constant lengths.
+template <int N>
+constexpr Index or_all(Index count) {
+  return N == Eigen::Dynamic ? count : N;
+}
+
+/// out = a b'. Only the first `seen` columns of b are nonzero. Requires seen >= 1; `out` must not alias.
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
+      out(i, j) = sum;
+    }
+}
+
+/// out = a b. Rows i >= `full` of `a` are shifts: row i is e_{i - full}'. b is zero outside its first `inner` rows and
+/// columns. Only the first `inner` columns of `out` are written. The bits equal those of `multiply` if b is finite.
+/// With full = a.rows(), `a` may be any matrix.
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
+  for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
+    for (Index i = 0; i < full; ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
+    for (Index i = full; i < a.rows(); ++i) out(i, j) = b(i - full, j);
+  }
+}
+
+/// out = a b. Requires an inner size >= 1; `out` must not alias.
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void multiply(Out& out, const A& a, const B& b) {
+  for (Index j = 0; j < b.cols(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = sum;
+    }
+}
+
+/// out += a b'. b is as in multiply_shifting. The columns of `a` from `inner` on are zero. The product must be
+/// symmetric (see add_symmetric_product).
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full,
+                                                                  Index inner) {
+  const Index rows = std::min(a.rows(), inner + full);
+  for (Index j = 0; j < rows; ++j)
+    for (Index i = j; i < rows; ++i) {
+      double sum = 0.0;
+      if (j >= full) {
+        sum = a(i, j - full);
+      } else {
+        sum = a(i, 0) * b(j, 0);
+        for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(j, k);
+      }
+      out(i, j) += sum;
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// out = a b. `a` differs from the identity only in its first `seen` columns. The bits equal those of `multiply` if b
+/// is finite. With seen = a.cols(), `a` may be any matrix.
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
+  for (Index j = 0; j < b.cols(); ++j)
+    for (Index i = 0; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(0, j);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(k, j);
+      out(i, j) = i < seen ? sum : sum + b(i, j);
+    }
+}
+
+/// out += a b', with `a` and b as in multiply_seeing. The product must be symmetric (see add_symmetric_product).
+template <class Out, class A, class B>
+[[gnu::always_inline]] inline void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = j; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
+      out(i, j) += j < seen ? sum : sum + a(i, j);
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// out += a b', for a product that is symmetric in theory. The lower triangle is computed and mirrored, so `out` is
+/// exactly symmetric.
+template <class Out, class A, class B>
+void add_symmetric_product(Out& out, const A& a, const B& b) {
+  add_symmetric_product_shifting(out, a, b, b.rows(), a.cols());
+}
+
+/// out += weight (P + d d'); all matrices are symmetric.
+template <class Out, class Matrix, class D>
+void add_about_mean(Out& out, double weight, const Matrix& P, const D& d) {
+  for (Index j = 0; j < d.size(); ++j)
+    for (Index i = j; i < d.size(); ++i) {
+      out(i, j) += weight * (P(i, j) + d(i) * d(j));
+      if (i != j) out(j, i) = out(i, j);
+    }
+}
+
+/// Root-free Cholesky factorisation S = L D L', L unit lower triangular.
+template <int Size>
+struct Ldl {
+  Eigen::Matrix<double, Size, Size> L;       ///< only the strictly lower part is used
+  Eigen::Matrix<double, Size, 1> D;          ///< pivots, all positive
+  Eigen::Matrix<double, Size, 1> D_inverse;  ///< 1 / D
+
+  explicit Ldl(Index size) : L(size, size), D(size), D_inverse(size) {}
+
+  template <class Matrix>
+  void factorise(const Matrix& S) {
+    for (Index j = 0; j < D.size(); ++j) {
+      double pivot = S(j, j);
+      for (Index k = 0; k < j; ++k) pivot -= L(j, k) * L(j, k) * D(k);
+      D(j) = std::max({pivot, relative_pivot_floor * std::abs(S(j, j)), least_variance});
+      D_inverse(j) = 1.0 / D(j);
+      for (Index i = j + 1; i < D.size(); ++i) {
+        double sum = S(i, j);
+        for (Index k = 0; k < j; ++k) sum -= L(i, k) * L(j, k) * D(k);
+        L(i, j) = sum * D_inverse(j);
+      }
+    }
+  }
+
+  /// v := L^-1 v: subtracts from each component its prediction from earlier components. The remainder has variance D.
+  template <class Vector>
+  void decorrelate(Vector&& v) const {
+    for (Index i = 1; i < D.size(); ++i)
+      for (Index k = 0; k < i; ++k) v(i) -= L(i, k) * v(k);
+  }
+
+  /// v := S^-1 v.
+  template <class Vector>
+  void solve(Vector&& v) const {
+    decorrelate(v);
+    for (Index i = D.size() - 1; i >= 0; --i) {
+      v(i) *= D_inverse(i);
+      for (Index k = i + 1; k < D.size(); ++k) v(i) -= L(k, i) * v(k);
+    }
+  }
+
+  /// v' S^-1 v for a v that `decorrelate` has changed.
+  template <class Vector>
+  double squared_distance(const Vector& v) const {
+    double sum = 0.0;
+    for (Index i = 0; i < D.size(); ++i) sum += v(i) * v(i) * D_inverse(i);
+    return sum;
+  }
+
+  double log_determinant() const {
+    double sum = 0.0;
+    for (Index i = 0; i < D.size(); ++i) sum += std::log(D(i));
+    return sum;
+  }
+};
+
+}  // namespace small
+
+/// Mean and covariance of a state of size N, fixed or Eigen::Dynamic.
+template <int N>
+struct Gaussian {
+  Eigen::Matrix<double, N, 1> mean;
+  Eigen::Matrix<double, N, N> covariance;
+  /// Rows from this index on are known: their covariance is zero, and their mean is the same in every mode. The lags of
+  /// an exact sensor are known.
+  Eigen::Index uncertain;
+
+  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
+    mean.setZero();
+    covariance.setZero();
+  }
+};
+
+/// Repairs a prediction. Diverging values are scaled down. If variances differ by more than double precision, rounding
+/// can make a covariance indefinite. The variances then stay, and the correlations are set to zero.
+template <int N>
+void make_usable(Gaussian<N>& g) {
+  double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
+  for (Eigen::Index i = 1; i < g.mean.size(); ++i) {
+    largest = std::max(largest, g.covariance(i, i));
+    least = std::min(least, g.covariance(i, i));
+    mean = std::max(mean, std::abs(g.mean(i)));
+  }
+  if (least < 0.0) {
+    for (Eigen::Index j = 0; j < g.mean.size(); ++j)
+      for (Eigen::Index i = 0; i < g.mean.size(); ++i) g.covariance(i, j) = i == j ? std::abs(g.covariance(i, j)) : 0.0;
+    largest = std::max(largest, -least);
+  }
+  if (largest > largest_variance) g.covariance *= largest_variance / largest;
+  if (mean > largest_mean) g.mean *= largest_mean / mean;
+}
+
+/// Bounds the variances after a measurement, because a measurement cannot enlarge them. Rounding can make a variance
+/// negative if S is near singular (R = 0 and singular Q). The variances are then kept within the bounds, and the
+/// correlations are set to zero.
+template <int N>
+void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
+  if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
+  for (Eigen::Index j = 0; j < posterior.mean.size(); ++j)
+    for (Eigen::Index i = 0; i < posterior.mean.size(); ++i)
+      posterior.covariance(i, j) =
+          i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
+}
+
+/// Whether every number is finite. Tests the sum of the numbers (terms are far below overflow).
+template <int N>
+bool is_finite(const Gaussian<N>& g) {
+  double sum = 0.0;
+  for (Eigen::Index j = 0; j < g.mean.size(); ++j) {
+    sum += g.mean(j);
+    for (Eigen::Index i = 0; i < g.mean.size(); ++i) sum += g.covariance(i, j);
+  }
+  return std::isfinite(sum);
+}
+
+}  // namespace modebank

@@ -1,0 +1,214 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <cmath>
+
+#include "filter/step/gaussian.hpp"
+#include "filter/step/model.hpp"
+#include "ident/base/log_two_pi.hpp"
+#include "ident/model/linear_model.hpp"
+
+namespace modebank {
+
+/// Replaces signal i of a covariance by a signal of variance one without correlation.
+template <class Matrix>
+void detach(Matrix& S, Eigen::Index i) {
+  S.row(i).setZero();
+  S.col(i).setZero();
+  S(i, i) = 1.0;
+}
+
+/// A sensor with missing signals. The rows of C and R for a missing signal become those of a signal that is always
+/// zero, has variance one and no correlation, and is measured as zero. Gains, NIS and the other signals' densities are
+/// then exactly those of the available signals. For each missing signal, the log density is too small by log(2 pi) / 2.
+template <int N, int NY>
+struct PartialSensor {
+  Eigen::Matrix<double, NY, N> C;
+  Eigen::Matrix<double, NY, NY> R;
+  Eigen::Matrix<double, NY, 1> y;
+  static constexpr bool exact = false;
+  Eigen::Index seen_columns;  ///< leading columns of C that contain all nonzero entries (FilterModel)
+  Eigen::Index missing = 0;   ///< number of missing signals
+
+  PartialSensor(Eigen::Index n, Eigen::Index n_y) : C(n_y, n), R(n_y, n_y), y(n_y), seen_columns(n) {}
+
+  template <class Sensor, class Y>
+  void assign(const Sensor& whole, const Y& measured) {
+    C = whole.C;
+    R = whole.R;
+    y = measured;
+    seen_columns = whole.seen_columns;
+    missing = 0;
+    for (Eigen::Index i = 0; i < y.size(); ++i)
+      if (is_missing(measured(i))) {
+        C.row(i).setZero();
+        detach(R, i);
+        y(i) = 0.0;
+        ++missing;
+      }
+  }
+};
+
+/// One mode's Kalman step with its workspace, sized once. Call in this order: `predict`, `expect`, `observe`,
+/// `correct`.
+template <int N, int NY>
+struct KalmanStep {
+  Gaussian<N> predicted;                                ///< x, P before the measurement
+  Eigen::Matrix<double, NY, 1> innovation;              ///< e = y - C x
+  Eigen::Matrix<double, NY, 1> decorrelated;            ///< L^-1 e; its variance is cholesky.D
+  Eigen::Matrix<double, NY, NY> innovation_covariance;  ///< S = C P C' + R
+  small::Ldl<NY> cholesky;                              ///< factor of S; a singular S is regularised
+  double log_density = 0.0;                             ///< log N(e; 0, S)
+
+  KalmanStep(Eigen::Index n, Eigen::Index n_y, Eigen::Index regressors)
+      : predicted(n),
+        innovation(n_y),
+        decorrelated(n_y),
+        innovation_covariance(n_y, n_y),
+        cholesky(n_y),
+        NN_(n, n),
+        gain_(n, n_y),
+        PCt_(n, n_y),
+        closed_loop_(n, n),
+        NY_(n, n_y),
+        phi_(regressors) {}
+
+  /// x = x + A x + B u + c, P = F P F' + noise_factor Q. If there are terms g, g is added to x, and F includes the
+  /// derivative of g at the mean. This is an extended Kalman filter, which is exact for P = 0.
+  template <class U>
+  void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
+               const U& u, double noise_factor);
+  /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
+  /// model, or its part for the available signals.
+  template <class Sensor>
+  void expect(const Sensor& sensor);
+  /// Computes the innovation e and its log density.
+  template <class Sensor, class Y>
+  void observe(const Sensor& sensor, const Y& y);
+  /// State after the measurement, covariance in Joseph's form.
+  template <class Sensor, class Y>
+  void correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
+  /// log N(residual; 0, S) for any residual. `residual` is decorrelated in place.
+  template <class Vector>
+  double log_normal(Vector& residual) const;
+
+ private:
+  Eigen::Matrix<double, N, N> NN_;
+  Eigen::Matrix<double, N, NY> gain_, PCt_;
+  Eigen::Matrix<double, N, N> closed_loop_;
+  Eigen::Matrix<double, N, NY> NY_;
+  Eigen::VectorXd phi_;
+  TermValues terms_;
+  Eigen::Matrix<double, N, N> bent_F_;
+
+  /// Copies the rows that an exact sensor measures. A correction would add rounding errors.
+  template <class Sensor, class Y>
+  static void take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
+  /// Adds the terms to the predicted mean, and their derivatives to F.
+  template <class U>
+  const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
+                                          const typename FilterModel<N, NY>::Mode& mode,
+                                          const Eigen::Matrix<double, N, 1>& x, const U& u);
+};
+
+template <int N, int NY>
+template <class U>
+void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
+                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_factor) {
+  propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
+  for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
+    predicted.mean(i) = from.mean(i - model.full_rows);
+  const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
+  predicted.covariance = noise_factor * mode.Q;
+  predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
+  if (from.uncertain > 0) {
+    const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
+    small::multiply_shifting(NN_, F, from.covariance, full, inner);
+    small::add_symmetric_product_shifting(predicted.covariance, NN_, F, full, inner);
+  }
+  make_usable(predicted);
+}
+
+template <int N, int NY>
+template <class U>
+const Eigen::Matrix<double, N, N>& KalmanStep<N, NY>::bend(const FilterModel<N, NY>& model,
+                                                           const typename FilterModel<N, NY>::Mode& mode,
+                                                           const Eigen::Matrix<double, N, 1>& x, const U& u) {
+  fill_regressor(model.structure, x, u, phi_);
+  terms_.evaluate(model.terms, phi_);
+  bent_F_ = mode.F;
+  const Eigen::MatrixXd& slope = terms_.slope();
+  for (Eigen::Index a = 0; a < mode.bend.rows(); ++a) {
+    predicted.mean(a) += mode.bend.row(a).dot(terms_.value());
+    for (Eigen::Index i = 0; i < bent_F_.cols(); ++i) bent_F_(a, i) += mode.bend.row(a).dot(slope.col(i));
+  }
+  return bent_F_;
+}
+
+template <int N, int NY>
+template <class Sensor>
+void KalmanStep<N, NY>::expect(const Sensor& sensor) {
+  small::multiply_transposed(PCt_, predicted.covariance, sensor.C, small::or_all<N>(sensor.seen_columns));
+  innovation_covariance = sensor.R;
+  small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
+  cholesky.factorise(innovation_covariance);
+}
+
+template <int N, int NY>
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
+  small::multiply(innovation, sensor.C, predicted.mean);
+  innovation = y - innovation;
+  decorrelated = innovation;
+  log_density = log_normal(decorrelated);
+}
+
+template <int N, int NY>
+template <class Vector>
+double KalmanStep<N, NY>::log_normal(Vector& residual) const {
+  cholesky.decorrelate(residual);
+  return measured_density(-0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
+                                  cholesky.squared_distance(residual)));
+}
+
+template <int N, int NY>
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
+  posterior.uncertain = predicted.uncertain;
+  if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
+    posterior.mean = predicted.mean;
+    posterior.covariance.setZero();
+    posterior.uncertain = 0;
+    return take_exactly(sensor, y, posterior);
+  }
+  for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
+    gain_.row(i) = PCt_.row(i);
+    cholesky.solve(gain_.row(i));
+  }
+  small::multiply(posterior.mean, gain_, innovation);
+  posterior.mean += predicted.mean;
+  small::multiply(closed_loop_, gain_, sensor.C);
+  closed_loop_ = -closed_loop_;
+  const Eigen::Index seen = small::or_all<N>(sensor.seen_columns);
+  closed_loop_.diagonal().array() += 1.0;
+  small::multiply_seeing(NN_, closed_loop_, predicted.covariance, seen);
+  posterior.covariance.setZero();
+  small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, seen);
+  small::multiply(NY_, gain_, sensor.R);
+  small::add_symmetric_product(posterior.covariance, NY_, gain_);
+  if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
+  bound_variances(predicted, posterior);
+  if (sensor.exact) take_exactly(sensor, y, posterior);
+}
+
+template <int N, int NY>
+template <class Sensor, class Y>
+void KalmanStep<N, NY>::take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
+  const Eigen::Index seen = sensor.seen_columns;
+  posterior.mean.head(seen) = y;
+  posterior.covariance.topRows(seen).setZero();
+  posterior.covariance.leftCols(seen).setZero();
+}
+
+}  // namespace modebank

@@ -1,0 +1,63 @@
+#include "filter/step/samples.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "modebank/base/error.hpp"
+
+namespace modebank {
+
+using Eigen::Index;
+
+SampleFeed::SampleFeed(const Bank& bank)
+    : inputs_(bank.structure.inputs),
+      latest_delay_(bank.structure.input_delay.latest()),
+      acting_inputs_(bank.structure.acting_inputs()),
+      first_transition_(bank.structure.first_transition()),
+      dt_s_(bank.dt_s),
+      // The acting inputs of sample k are the `input_lags` inputs u[k-d], u[k-d-1], ..., where d is the input's delay.
+      recent_(Eigen::MatrixXd::Zero(inputs_, latest_delay_ + bank.structure.input_lags)),
+      measurements_(Eigen::MatrixXd::Zero(bank.C.rows(), bank.structure.state_lags)) {
+  for (Index i = 0; i < inputs_; ++i) ahead_.push_back(latest_delay_ - bank.structure.input_delay[i]);
+}
+
+Index SampleFeed::whole_steps(double periods) {
+  if (std::isnan(periods)) return 1;
+  return std::lround(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)));
+}
+
+void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
+                      const Eigen::Ref<const Eigen::VectorXd>& measurement) {
+  if (input.size() != inputs_ || measurement.size() != measurements_.rows())
+    throw std::invalid_argument("a sample of " + std::to_string(input.size()) + " inputs and " +
+                                std::to_string(measurement.size()) + " measurements, the bank has " +
+                                std::to_string(inputs_) + " and " + std::to_string(measurements_.rows()));
+  push(time_s, input.data(), measurement.data());
+}
+
+void SampleFeed::settle() const {
+  if (!recent_.allFinite() || samples_ < 0 || whole_ < 0 || whole_ > samples_)
+    throw std::invalid_argument("the snapshot has samples with invalid counts or inputs");
+}
+
+void check_run(const Bank& bank, const Trajectory& run) {
+  check_sizes(bank);
+  const auto mismatch = [&](const std::string& what, Index is, Index expected) {
+    if (is != expected)
+      throw std::invalid_argument("run " + run.run + " has " + std::to_string(is) + " " + what + ", the bank needs " +
+                                  std::to_string(expected));
+  };
+  mismatch("measured signals", run.state.rows(), bank.C.rows());
+  mismatch("inputs", run.input.rows(), bank.structure.inputs);
+  mismatch("input samples", run.input.cols(), run.samples());
+  if (run.time_s.size() > 0) mismatch("times", run.time_s.size(), run.samples());
+  // one vectorised pass tests whether all entries are finite
+  if ((run.input.leftCols(run.transitions()).array() * 0.0).sum() == 0.0) return;
+  for (Index k = 0; k < run.transitions(); ++k)
+    if (!run.input.col(k).allFinite())
+      throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");
+}
+
+}  // namespace modebank
