@@ -82,22 +82,15 @@ class ForecastTables {
   std::vector<CombinationRow> combination() const;
 
  private:
-  /// Sums over samples (filters x horizons), and the number of samples (horizons).
-  struct Weights {
-    Eigen::MatrixXd sum;
-    Eigen::VectorXd samples;
-  };
   std::vector<std::string> filters_;  ///< filters to combine
   const std::vector<Trajectory>& runs_;
   std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter and run; the combination is the last filter
-  std::vector<Weights> weights_;                             ///< per run
+  std::vector<Eigen::MatrixXd> weights_;                     ///< per run: filters x horizons, sums over its samples
   std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x stored samples
   Eigen::Index every_ = 1;                                   ///< one of this many samples is kept in densities_
   std::vector<std::vector<double>> start_;                   ///< per horizon; if empty, weights are equal
 
-  Weights weights_of(Role role) const;
   bool combines() const { return filters_.size() > 1; }
-  static Weights sum_weights(const std::vector<Eigen::MatrixXd>& weight);
 };
 
 }  // namespace modebank

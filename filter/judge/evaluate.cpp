@@ -15,45 +15,39 @@ namespace {
 
 using Eigen::Index;
 
-RunEvaluation sized_evaluation(const Bank& bank, Index samples) {
-  const Index n = bank.structure.states, n_y = bank.C.rows(), K = bank.mode_count();
-  RunEvaluation e;
-  e.prediction.resize(n, samples);
-  e.innovation.resize(n_y, samples);
-  e.innovation_covariance.resize(n_y * n_y, samples);
-  e.state.resize(n, samples);
-  e.covariance.resize(n * n, samples);
-  e.nis.resize(samples);
-  e.pit.resize(n_y, samples);
-  if (bank.is_quantised()) e.pit_width.setZero(n_y, samples);
-  e.log_density.resize(samples);
-  e.mode_probability_predicted.resize(K, samples);
-  e.mode_probability.resize(K, samples);
-  return e;
-}
-
-void record(const FilterEstimate& estimate, Index k, RunEvaluation& e) {
-  const Index n = e.state.rows();
-  e.prediction.col(k) = estimate.prediction.head(n);
-  e.innovation.col(k) = estimate.innovation;
-  e.innovation_covariance.col(k) = estimate.innovation_covariance.reshaped();
-  e.state.col(k) = estimate.state.head(n);
-  e.covariance.col(k) = estimate.covariance.topLeftCorner(n, n).reshaped();
-  e.nis(k) = estimate.nis;
-  e.pit.col(k) = estimate.pit;
-  if (e.pit_width.size() > 0) e.pit_width.col(k) = estimate.pit_width;
-  e.log_density(k) = estimate.log_density;
-  e.mode_probability_predicted.col(k) = estimate.mode_probability_predicted;
-  e.mode_probability.col(k) = estimate.mode_probability;
+/// Calls visit(vector of a sample, its columns in a run) for the n states and the measured signals.
+template <class Visit>
+void each_vector(const FilterEstimate& sample, Index n, RunEvaluation& e, Visit visit) {
+  visit(sample.prediction.head(n), e.prediction);
+  visit(sample.innovation, e.innovation);
+  visit(sample.innovation_covariance.reshaped(), e.innovation_covariance);
+  visit(sample.state.head(n), e.state);
+  visit(sample.covariance.topLeftCorner(n, n).reshaped(), e.covariance);
+  visit(sample.pit, e.pit);
+  visit(sample.pit_width, e.pit_width);
+  visit(sample.mode_probability_predicted, e.mode_probability_predicted);
+  visit(sample.mode_probability, e.mode_probability);
 }
 
 /// `bank`: any bank with the sizes of the filter's results.
 template <class Filter>
 RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
-  RunEvaluation evaluation = sized_evaluation(bank, run.samples());
-  for (Index k = 0; k < run.samples(); ++k)
-    record(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), k, evaluation);
-  return evaluation;
+  const Index n = bank.structure.states, N = run.samples();
+  RunEvaluation e;
+  e.nis.resize(N);
+  e.log_density.resize(N);
+  each_vector(filter.estimate(), n, e,
+              [N](const auto& value, Eigen::MatrixXd& values) { values.resize(value.size(), N); });
+  if (!bank.is_quantised()) e.pit_width.resize(0, 0);
+  for (Index k = 0; k < N; ++k) {
+    const FilterEstimate& sample = filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k));
+    e.nis(k) = sample.nis;
+    e.log_density(k) = sample.log_density;
+    each_vector(sample, n, e, [k](const auto& value, Eigen::MatrixXd& values) {
+      if (values.size() > 0) values.col(k) = value;
+    });
+  }
+  return e;
 }
 
 }  // namespace

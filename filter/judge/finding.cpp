@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <map>
-#include <utility>
 
 #include "filter/step/combined_filter.hpp"
 #include "ident/base/distributions.hpp"
@@ -145,47 +143,36 @@ bool leaves_rounding(const FindingInputs& in) {
   return false;
 }
 
-/// The competitor with the smallest RMSE at each horizon and state, if this RMSE is below that of the bank.
-class BestMeans {
- public:
-  void add(const std::string& filter, Index horizon, const Eigen::VectorXd& rmse) {
-    if (filter == "bank") bank_[horizon] = rmse;
-    for (Index i = 0; i < rmse.size() && filter != "bank"; ++i) {
-      BetterMean& least = least_[{horizon, i}];
-      if (least.competitor.empty() || rmse(i) < least.rmse) least = {filter, horizon, "", 0.0, rmse(i)};
-    }
-  }
-  std::vector<BetterMean> better(const std::vector<Resolution>& states) const {
-    std::vector<BetterMean> result;
-    for (const auto& [where, least] : least_) {
-      const auto bank = bank_.find(where.first);
-      if (bank == bank_.end() || !(least.rmse < (1.0 - noticeable_rmse) * bank->second(where.second))) continue;
-      result.push_back(least);
-      result.back().rmse_bank = bank->second(where.second);
-      if (states.size() > 1) result.back().state = states[static_cast<std::size_t>(where.second)].state;
-    }
-    // Free runs come last, because they look furthest ahead.
-    std::stable_partition(result.begin(), result.end(), [](const BetterMean& m) { return m.horizon > 0; });
-    return result;
-  }
-
- private:
-  std::map<Index, Eigen::VectorXd> bank_;
-  std::map<std::pair<Index, Index>, BetterMean> least_;
-};
-
+/// The competitor with the smallest RMSE at each horizon and state, if this RMSE is below that of the bank. Free runs
+/// come last, because they look furthest ahead.
 std::vector<BetterMean> better_means(const FindingInputs& in) {
-  BestMeans means;
-  const auto counts = [&](const auto& row) {
-    return row.run == "*" && row.role == in.role && row.filter != combined_name;
+  struct Errors {
+    std::string filter;
+    Index horizon;
+    Eigen::VectorXd rmse;
   };
-  for (const SummaryRow& row : in.summary)
-    if (counts(row)) means.add(row.filter, 1, row.rmse);
+  std::vector<Errors> all;
+  const auto add = [&](const auto& row, Index horizon) {
+    if (row.run == "*" && row.role == in.role && row.filter != combined_name)
+      all.push_back({row.filter, horizon, row.rmse});
+  };
+  for (const SummaryRow& row : in.summary) add(row, 1);
   for (const HorizonRow& row : in.horizons)
-    if (counts(row) && row.horizon > 1) means.add(row.filter, row.horizon, row.rmse);
-  for (const FreeRunRow& row : in.free_runs)
-    if (counts(row)) means.add(row.filter, free_run_horizon, row.rmse);
-  return means.better(in.states);
+    if (row.horizon > 1) add(row, row.horizon);
+  for (const FreeRunRow& row : in.free_runs) add(row, free_run_horizon);
+  std::vector<BetterMean> result;
+  for (const Errors& bank : all)
+    for (Index i = 0; i < bank.rmse.size() && bank.filter == "bank"; ++i) {
+      BetterMean least{"", bank.horizon, "", bank.rmse(i), (1.0 - noticeable_rmse) * bank.rmse(i)};
+      for (const Errors& other : all) {
+        if (other.filter == "bank" || other.horizon != bank.horizon || !(other.rmse(i) < least.rmse)) continue;
+        least.competitor = other.filter;
+        least.rmse = other.rmse(i);
+      }
+      if (in.states.size() > 1) least.state = in.states[static_cast<std::size_t>(i)].state;
+      if (!least.competitor.empty()) result.push_back(least);
+    }
+  return result;
 }
 
 /// Variances of theta; NaN without standard errors.

@@ -20,26 +20,18 @@ using Eigen::Index;
 template <int N, int NY>
 class MomentForecast final : public Forecast {
  public:
-  explicit MomentForecast(const ImmFilter<N, NY>& bank) : bank_(bank), outputs_(bank.model().C.rows()) {}
+  explicit MomentForecast(const ImmFilter<N, NY>& bank) : bank_(bank) {}
   void start(const ImmFilter<N, NY>& origin) { bank_.start(origin); }
   void step(const Vector& inputs) override { bank_.step(inputs); }
 
   Eigen::VectorXd mean() const override {
-    Eigen::VectorXd result(outputs_);
-    for (Index i = 0; i < outputs_; ++i) {
-      const NormalMixture signal = bank_.signal(i);
-      result(i) = signal.weight.dot(signal.mean);
-    }
-    return result;
+    return of_signals([](const NormalMixture& signal) { return signal.mixture_mean(); });
   }
   Eigen::VectorXd standard_deviation() const override {
-    Eigen::VectorXd result = mean();
-    for (Index i = 0; i < outputs_; ++i) {
-      const NormalMixture signal = bank_.signal(i);
-      const auto variance = signal.deviation.array().square() + (signal.mean.array() - result(i)).square();
-      result(i) = std::sqrt((signal.weight.array() * variance).sum());
-    }
-    return result;
+    return of_signals([](const NormalMixture& signal) {
+      const auto variance = signal.deviation.array().square() + (signal.mean.array() - signal.mixture_mean()).square();
+      return std::sqrt((signal.weight.array() * variance).sum());
+    });
   }
   double probability(Index i, double y) const override { return bank_.signal(i).probability(y); }
   double quantile(Index i, double p) const override { return bank_.signal(i).quantile(p, normal_quantile(p)); }
@@ -48,42 +40,13 @@ class MomentForecast final : public Forecast {
 
  private:
   ImmFilter<N, NY> bank_;
-  Index outputs_;
-};
 
-template <int N, int NY>
-class MomentFilter final : public ForecastingFilter {
- public:
-  MomentFilter(const Bank& bank, const Trajectory& run, const FilterOptions& options)
-      : ForecastingFilter(bank, run), filter_(bank, options), forecast_(filter_) {}
-  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
-
- protected:
-  Forecast& start_forecast() override {
-    forecast_.start(filter_);
-    return forecast_;
+  template <class F>
+  Eigen::VectorXd of_signals(F f) const {
+    Eigen::VectorXd result(bank_.model().C.rows());
+    for (Index i = 0; i < result.size(); ++i) result(i) = f(bank_.signal(i));
+    return result;
   }
-
- private:
-  ImmFilter<N, NY> filter_;
-  MomentForecast<N, NY> forecast_;
-};
-
-class PathFilter final : public ForecastingFilter {
- public:
-  PathFilter(const Bank& bank, const Trajectory& run, const FilterOptions& options, Index paths, std::uint64_t seed)
-      : ForecastingFilter(bank, run), filter_(bank, options), paths_(bank, paths, seed) {}
-  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
-
- protected:
-  Forecast& start_forecast() override {
-    paths_.start(filter_.state());
-    return paths_;
-  }
-
- private:
-  ImmFilter<Eigen::Dynamic, Eigen::Dynamic> filter_;
-  SamplePaths paths_;
 };
 
 /// Log density of a mixture of levels whose variances are multiplied by `factor`. `whitened`, `log_weight`: of one
@@ -165,12 +128,14 @@ class RunningNoiseForecast final : public Forecast {
   }
 };
 
-class RunningNoiseFilter final : public ForecastingFilter {
+/// A filter, and the forecast that starts from it.
+template <class Filter, class Ahead>
+class FilterWithForecast final : public ForecastingFilter {
  public:
-  RunningNoiseFilter(const Bank& bank, const Trajectory& run, bool merged)
-      : ForecastingFilter(bank, run), filter_(bank), forecast_(bank, merged) {}
+  FilterWithForecast(const Bank& bank, const Trajectory& run, Filter filter, Ahead ahead)
+      : ForecastingFilter(bank, run), filter_(std::move(filter)), forecast_(std::move(ahead)) {}
   void step_to(Index t) override { follow(moments(), t, run_, filter_); }
-  const RunningNoiseForecast& forecast() const { return forecast_; }
+  const Ahead& forecast() const { return forecast_; }
 
  protected:
   Forecast& start_forecast() override {
@@ -179,34 +144,45 @@ class RunningNoiseFilter final : public ForecastingFilter {
   }
 
  private:
-  DriftingFilter filter_;
-  RunningNoiseForecast forecast_;
+  Filter filter_;
+  Ahead forecast_;
 };
 
-std::unique_ptr<ForecastingFilter> moment_filter(const Bank& bank, const Trajectory& run,
-                                                 const FilterOptions& options) {
-  return with_sizes(bank.structure.dimension(), bank.C.rows(),
-                    [&]<int N, int NY>() -> std::unique_ptr<ForecastingFilter> {
-                      return std::make_unique<MomentFilter<N, NY>>(bank, run, options);
-                    });
+template <class Filter, class Ahead>
+auto make_filter(const Bank& bank, const Trajectory& run, Filter filter, Ahead ahead) {
+  return std::make_unique<FilterWithForecast<Filter, Ahead>>(bank, run, std::move(filter), std::move(ahead));
+}
+
+/// `merged`: see RunningNoiseForecast.
+auto running_noise_filter(const Bank& bank, const Trajectory& run, bool merged) {
+  validate(bank);
+  return make_filter(bank, run, DriftingFilter(bank), RunningNoiseForecast(bank, merged));
+}
+
+using AnyFilter = std::unique_ptr<ForecastingFilter>;
+
+AnyFilter moment_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
+  return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> AnyFilter {
+    const ImmFilter<N, NY> filter(bank, options);
+    return make_filter(bank, run, filter, MomentForecast<N, NY>(filter));
+  });
 }
 
 }  // namespace
 
-std::unique_ptr<ForecastingFilter> forecasting_filter(const Bank& bank, const Trajectory& run,
-                                                      const FilterOptions& options) {
+AnyFilter forecasting_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   if (bank.running_noise.empty()) return moment_filter(bank, run, options);
-  validate(bank);
-  return std::make_unique<RunningNoiseFilter>(bank, run, false);
+  return running_noise_filter(bank, run, false);
 }
 
-std::unique_ptr<ForecastingFilter> free_running_filter(const Bank& bank, const Trajectory& run,
-                                                       const FilterOptions& options, Index paths, std::uint64_t seed) {
+AnyFilter free_running_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options, Index paths,
+                              std::uint64_t seed) {
   check_run(bank, run);
-  if (!bank.running_noise.empty()) return std::make_unique<RunningNoiseFilter>(bank, run, true);
-  if (!bank.transition_logit.empty()) return std::make_unique<PathFilter>(bank, run, options, paths, seed);
-  return moment_filter(bank, run, options);
+  if (!bank.running_noise.empty()) return running_noise_filter(bank, run, true);
+  if (bank.transition_logit.empty()) return moment_filter(bank, run, options);
+  return make_filter(bank, run, ImmFilter<Eigen::Dynamic, Eigen::Dynamic>(bank, options),
+                     SamplePaths(bank, paths, seed));
 }
 
 double LevelErrors::widening_gain(const StudentNoise& noise, Index k, double factor) const {
@@ -220,11 +196,10 @@ std::vector<LevelErrors> level_errors(const Bank& bank, const Trajectory& run, c
                                {Eigen::MatrixXd::Constant(J * bank.C.rows(), run.samples(), not_a_number),
                                 Eigen::MatrixXd::Constant(J, run.samples(), not_a_number)});
   if (horizons.empty()) return out;
-  validate(bank);
   check_run(bank, run);
-  RunningNoiseFilter filter(bank, run, false);
-  filter.predict_run(horizons, [&](const Forecast&, std::size_t h, Index k) {
-    filter.forecast().whiten(run.state.col(k), out[h].whitened.col(k), out[h].log_weight.col(k));
+  const auto filter = running_noise_filter(bank, run, false);
+  filter->predict_run(horizons, [&](const Forecast&, std::size_t h, Index k) {
+    filter->forecast().whiten(run.state.col(k), out[h].whitened.col(k), out[h].log_weight.col(k));
   });
   return out;
 }

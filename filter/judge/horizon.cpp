@@ -59,14 +59,6 @@ HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, con
   return out;
 }
 
-HorizonSums& HorizonSums::operator+=(const HorizonSums& other) {
-  samples += other.samples;
-  log_density += other.log_density;
-  squared_error += other.squared_error;
-  inside += other.inside;
-  return *this;
-}
-
 std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
   std::vector<HorizonSums> sums;
   for (std::size_t h = 0; h < run.horizons.size(); ++h) {
@@ -84,6 +76,20 @@ std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
   return sums;
 }
 
+void pool(const std::vector<HorizonSums>& run, std::vector<HorizonSums>& all) {
+  if (all.empty()) {
+    all = run;
+    return;
+  }
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    const HorizonSums& of = run.at(h);
+    all[h].samples += of.samples;
+    all[h].log_density += of.log_density;
+    all[h].squared_error += of.squared_error;
+    all[h].inside += of.inside;
+  }
+}
+
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
                                            const std::vector<std::vector<HorizonSums>>& sums) {
   std::vector<HorizonRow> rows;
@@ -97,12 +103,8 @@ std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std:
     std::vector<HorizonSums> pooled;
     for (std::size_t i = 0; i < runs.size(); ++i) {
       if (runs[i].role != role) continue;
-      const std::vector<HorizonSums>& single = sums.at(i);
-      for (const HorizonSums& of : single) add_row(role, runs[i].run, of);
-      if (pooled.empty())
-        pooled = single;
-      else
-        for (std::size_t h = 0; h < pooled.size(); ++h) pooled[h] += single.at(h);
+      for (const HorizonSums& of : sums.at(i)) add_row(role, runs[i].run, of);
+      pool(sums[i], pooled);
     }
     for (const HorizonSums& of : pooled) add_row(role, "*", of);
   }

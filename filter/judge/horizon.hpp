@@ -49,11 +49,11 @@ struct HorizonSums {
   double log_density = 0.0;
   Eigen::ArrayXd squared_error;  ///< n_y
   double inside = 0.0;           ///< number of signals inside the central 95 % band
-
-  HorizonSums& operator+=(const HorizonSums& other);
 };
 /// The sums of a run, one element per horizon.
 std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run);
+/// Adds the sums of a run to those of all runs, which are empty at first.
+void pool(const std::vector<HorizonSums>& run, std::vector<HorizonSums>& all);
 
 /// Rows of one filter in the order of summarize_free_runs(), each with all horizons. `sums`: the sums of every run.
 std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,

@@ -89,38 +89,6 @@ MeanError error_by_blocks(const SeriesByRun& d, double mean, std::size_t length)
   return {std::sqrt(B / (B - 1.0) * squares / count / (b * samples)), B - 1.0};
 }
 
-}  // namespace
-
-PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
-                       const std::vector<Eigen::VectorXd>& other) {
-  const SeriesByRun d = differences(better, other);
-  PairedGain result{competitor, static_cast<Index>(sample_count(d)), mean_of(d)};
-  result.by_blocks = d.size() < fewest_runs;
-  result.standard_error = result.margin = not_a_number;
-  if (!std::isfinite(result.gain)) return result;
-  const std::size_t length = result.by_blocks ? block_length(d) : 0;
-  const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, length) : error_by_runs(d);
-  result.standard_error = error.standard_error;
-  result.degrees_of_freedom = error.degrees_of_freedom;
-  result.rank_p = signed_rank_p(means(d, length));
-  if (error.degrees_of_freedom > 0.0)
-    result.margin = student_quantile(upper_probability, error.degrees_of_freedom) * error.standard_error;
-  return result;
-}
-
-namespace {
-
-/// Twice the ranks of increasing sizes. Doubled ranks are whole numbers even if equal sizes share ranks.
-std::vector<std::size_t> double_ranks(const std::vector<double>& sizes) {
-  std::vector<std::size_t> ranks(sizes.size());
-  for (std::size_t first = 0, next = 0; first < sizes.size(); first = next) {
-    while (next < sizes.size() && sizes[next] == sizes[first]) ++next;
-    std::fill(ranks.begin() + static_cast<std::ptrdiff_t>(first), ranks.begin() + static_cast<std::ptrdiff_t>(next),
-              first + 1 + next);
-  }
-  return ranks;
-}
-
 /// P(sum of randomly chosen ranks >= sum), over all choices.
 double exact_tail(const std::vector<std::size_t>& ranks, std::size_t sum) {
   std::vector<double> ways(std::accumulate(ranks.begin(), ranks.end(), std::size_t{1}), 0.0);
@@ -141,17 +109,37 @@ double normal_tail(const std::vector<std::size_t>& ranks, std::size_t sum) {
 
 }  // namespace
 
+PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
+                       const std::vector<Eigen::VectorXd>& other) {
+  const SeriesByRun d = differences(better, other);
+  PairedGain result{competitor, static_cast<Index>(sample_count(d)), mean_of(d)};
+  result.by_blocks = d.size() < fewest_runs;
+  result.standard_error = result.margin = not_a_number;
+  if (!std::isfinite(result.gain)) return result;
+  const std::size_t length = result.by_blocks ? block_length(d) : 0;
+  const MeanError error = result.by_blocks ? error_by_blocks(d, result.gain, length) : error_by_runs(d);
+  result.standard_error = error.standard_error;
+  result.degrees_of_freedom = error.degrees_of_freedom;
+  result.rank_p = signed_rank_p(means(d, length));
+  if (error.degrees_of_freedom > 0.0)
+    result.margin = student_quantile(upper_probability, error.degrees_of_freedom) * error.standard_error;
+  return result;
+}
+
 double signed_rank_p(const std::vector<double>& differences) {
   constexpr std::size_t most_exact = 50;
   std::vector<double> sorted;
   std::copy_if(differences.begin(), differences.end(), std::back_inserter(sorted), [](double d) { return d != 0.0; });
-  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
-  std::vector<double> sizes(sorted.size());
-  std::transform(sorted.begin(), sorted.end(), sizes.begin(), [](double d) { return std::abs(d); });
-  const std::vector<std::size_t> ranks = double_ranks(sizes);
-  std::size_t sum = 0;
-  for (std::size_t i = 0; i < sorted.size(); ++i) sum += sorted[i] > 0.0 ? ranks[i] : 0;
   if (sorted.empty()) return 1.0;
+  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  // Ranks are doubled: so they are whole numbers even if equal sizes share ranks.
+  std::vector<std::size_t> ranks;
+  std::size_t sum = 0;
+  for (std::size_t first = 0, next = 0; first < sorted.size(); first = next) {
+    while (next < sorted.size() && std::abs(sorted[next]) == std::abs(sorted[first])) ++next;
+    ranks.resize(next, first + 1 + next);
+    for (std::size_t i = first; i < next; ++i) sum += sorted[i] > 0.0 ? ranks[i] : 0;
+  }
   return sorted.size() <= most_exact ? exact_tail(ranks, sum) : normal_tail(ranks, sum);
 }
 

@@ -22,7 +22,6 @@ SamplePaths::SamplePaths(const Bank& bank, Index paths, std::uint64_t seed)
       paths_(paths),
       generator_(seed),
       share_(bank.mode_count()),
-      probability_(bank.mode_count()),
       regressor_(bank.structure.regressors()),
       next_(bank.structure.dimension()),
       transition_(bank.mode_count(), bank.transition_logit) {
@@ -38,7 +37,8 @@ void SamplePaths::add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::Vector
   to.noalias() += scale * (root * normal_);
 }
 
-Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
+template <class Probability>
+Index SamplePaths::draw_mode(const Probability& probability) {
   double u = boost::random::uniform_01<double>()(generator_) * probability.sum();
   Index mode = 0;
   while (mode + 1 < probability.size() && (u -= probability(mode)) >= 0.0) ++mode;
@@ -48,13 +48,9 @@ Index SamplePaths::draw_mode(const Eigen::VectorXd& probability) {
 
 /// If mode probabilities depend on the state, they are those at the state of the path.
 Index SamplePaths::draw_next_mode(Index mode, const Vector& state, const Vector& inputs) {
-  if (bank_.mode_count() == 1)
-    probability_.setOnes();
-  else
-    probability_ = transition_at(bank_.transition.matrix(), bank_.transition_logit, state, inputs, transition_)
-                       .row(mode)
-                       .transpose();
-  return draw_mode(probability_);
+  const Eigen::MatrixXd& T =
+      transition_at(bank_.transition.matrix(), bank_.transition_logit, state, inputs, transition_);
+  return draw_mode(T.row(mode).transpose());
 }
 
 void SamplePaths::start(const FilterState<Eigen::Dynamic>& origin) {
@@ -99,17 +95,13 @@ void SamplePaths::step(const Vector& inputs) {
     states_.col(i) = next_;
     if ((states_.col(i).array().abs() < largest_mean).all()) finite.push_back(i);
   }
-  if (std::ssize(finite) < count()) keep(finite);
-}
-
-void SamplePaths::keep(const std::vector<Index>& which) {
-  lost_ += count() - std::ssize(which);
-  std::vector<Index> modes;
-  for (const Index i : which) modes.push_back(modes_[static_cast<std::size_t>(i)]);
-  modes_ = std::move(modes);
-  states_ = states_(Eigen::all, which).eval();
-  predicted_ = predicted_(Eigen::all, which).eval();
-  noise_factor_ = noise_factor_(which).eval();
+  if (std::ssize(finite) == count()) return;
+  lost_ += count() - std::ssize(finite);
+  for (std::size_t i = 0; i < finite.size(); ++i) modes_[i] = modes_[static_cast<std::size_t>(finite[i])];
+  modes_.resize(finite.size());
+  states_ = states_(Eigen::all, finite).eval();
+  predicted_ = predicted_(Eigen::all, finite).eval();
+  noise_factor_ = noise_factor_(finite).eval();
 }
 
 void SamplePaths::arrive(Index) {
@@ -140,16 +132,13 @@ Eigen::VectorXd SamplePaths::standard_deviation() const {
 
 double SamplePaths::probability(Index i, double y) const {
   const auto values = sorted_.col(i);
-  const double M = static_cast<double>(values.size());
-  const Index below = std::lower_bound(values.begin(), values.end(), y) - values.begin();
+  const Index M = values.size(), below = std::lower_bound(values.begin(), values.end(), y) - values.begin();
   double rank = static_cast<double>(below);
-  if (below == 0)
-    rank = 0.5;
-  else if (below == values.size())
-    rank = M + 0.5;
+  if (below == 0 || below == M)
+    rank += 0.5;
   else if (const double gap = values(below) - values(below - 1); gap > 0.0)
     rank += (y - values(below - 1)) / gap;
-  return rank / (M + 1.0);
+  return rank / static_cast<double>(M + 1);
 }
 
 double SamplePaths::quantile(Index i, double p) const {

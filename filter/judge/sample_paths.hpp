@@ -7,7 +7,7 @@
 
 #include "filter/judge/forecast.hpp"
 #include "filter/step/bank.hpp"
-#include "filter/step/imm.hpp"
+#include "filter/step/imm_filter.hpp"
 
 namespace modebank {
 
@@ -20,6 +20,7 @@ class SamplePaths final : public Forecast {
   SamplePaths(const Bank& bank, Eigen::Index paths, std::uint64_t seed);
 
   void start(const FilterState<Eigen::Dynamic>& origin);
+  void start(const ImmFilter<Eigen::Dynamic, Eigen::Dynamic>& origin) { start(origin.state()); }
   /// Advances every path by one model step. Removes a path if its values exceed largest_mean.
   void step(const Vector& inputs) override;
   void arrive(Eigen::Index) override;
@@ -48,15 +49,15 @@ class SamplePaths final : public Forecast {
   Eigen::MatrixXd sorted_;                   ///< count x n_y, measurements of the present sample
   Eigen::VectorXd noise_factor_;             ///< noise factor of every path in the last step
   std::vector<Eigen::Index> modes_;
-  Eigen::VectorXd share_, probability_, regressor_, next_, normal_;
+  Eigen::VectorXd share_, regressor_, next_, normal_;
   TransitionWorkspace transition_;
   TermValues terms_;
 
-  Eigen::Index draw_mode(const Eigen::VectorXd& probability);
+  template <class Probability>
+  Eigen::Index draw_mode(const Probability& probability);
   Eigen::Index draw_next_mode(Eigen::Index mode, const Vector& state, const Vector& inputs);
   void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale = 1.0);
   void add_terms(Eigen::Index mode, const Vector& state, const Vector& inputs);
-  void keep(const std::vector<Eigen::Index>& which);
   double log_density_of_mode(Eigen::VectorXd error, const Eigen::MatrixXd& S) const;
 };
 

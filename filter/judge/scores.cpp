@@ -1,10 +1,9 @@
 #include "filter/judge/scores.hpp"
 
 #include <array>
+#include <charconv>
 #include <cmath>
-#include <locale>
 #include <optional>
-#include <sstream>
 #include <stdexcept>
 
 #include "filter/judge/statistics.hpp"
@@ -17,20 +16,14 @@ namespace {
 
 using Eigen::Index;
 
-/// The two tails, 5 % together, of a chi-square variable (method: section 6).
-struct ChiSquareRegion {
-  double lower, upper;
-  explicit ChiSquareRegion(double degrees_of_freedom)
-      : lower(chi_square_quantile(true_tail, degrees_of_freedom)),
-        upper(chi_square_quantile(1.0 - true_tail, degrees_of_freedom)) {}
-};
-
 /// Sums over scored samples of one or more runs. A sample is scored by its available signals.
 class ScoreSums {
  public:
   explicit ScoreSums(Index measurements)
       : squared_error_(Eigen::ArrayXd::Zero(measurements)), errors_(Eigen::ArrayXd::Zero(measurements)) {
-    for (Index i = 1; i <= measurements; ++i) nis_regions_.emplace_back(static_cast<double>(i));
+    for (Index i = 1; i <= measurements; ++i)
+      nis_tails_.push_back({chi_square_quantile(true_tail, static_cast<double>(i)),
+                            chi_square_quantile(1.0 - true_tail, static_cast<double>(i))});
   }
 
   void add(const RunEvaluation& run, const RunScores& scores) {
@@ -67,7 +60,7 @@ class ScoreSums {
   SquaredDistances nis_;
   Eigen::ArrayXd squared_error_, errors_;
   std::vector<double> pit_, whiteness_;
-  std::vector<ChiSquareRegion> nis_regions_;            ///< tails of the NIS for one signal, two signals, ...
+  std::vector<Interval> nis_tails_;                     ///< limits of the tails for one signal, two signals, ...
   std::array<Index, coverage_levels.size()> inside_{};  ///< number of signals inside each central band
   ScoreBands bands_;
 
@@ -80,9 +73,9 @@ class ScoreSums {
     const Index signals = scored_signals(run, k);
     nis_.add(run.nis(k), signals);
     if (signals > 0) {
-      const ChiSquareRegion& nis_region = nis_regions_[static_cast<std::size_t>(signals - 1)];
-      nis_above_ += run.nis(k) > nis_region.upper;
-      nis_below_ += run.nis(k) < nis_region.lower;
+      const Interval& tails = nis_tails_[static_cast<std::size_t>(signals - 1)];
+      nis_above_ += run.nis(k) > tails.upper;
+      nis_below_ += run.nis(k) < tails.lower;
     }
     for (Index i = 0; i < run.pit.rows(); ++i) {
       if (!there(i)) continue;
@@ -122,17 +115,6 @@ std::vector<SummaryRow> summarize(const std::string& filter, Role role, const st
   return rows;
 }
 
-namespace {
-
-std::string shortest(double value) {
-  std::ostringstream text;
-  text.imbue(std::locale::classic());
-  text << value;
-  return text.str();
-}
-
-}  // namespace
-
 double ScoreGoal::loss(double score) const {
   switch (kind) {
     case Kind::higher:
@@ -152,9 +134,10 @@ std::string ScoreGoal::text() const {
     case Kind::lower:
       return "lower";
     case Kind::nominal:
-      return "nearest " + shortest(nominal);
+      break;
   }
-  return "";
+  std::array<char, 32> digits{};
+  return "nearest " + std::string(digits.data(), std::to_chars(digits.begin(), digits.end(), nominal).ptr);
 }
 
 std::optional<ScoreGoal> goal_of(const std::string& score, int states) {

@@ -13,45 +13,17 @@ namespace modebank {
 
 namespace {
 
-Eigen::VectorXi likeliest_modes(const RunEvaluation& e) {
-  Eigen::VectorXi modes = Eigen::VectorXi::Zero(e.log_density.size());
-  if (e.mode_probability_predicted.rows() < 2) return modes;
-  for (Eigen::Index k = 0; k < modes.size(); ++k)
-    if (!std::isnan(e.log_density(k))) e.mode_probability_predicted.col(k).maxCoeff(&modes(k));
-  return modes;
+constexpr double outer_tail = 0.025;
+constexpr double root_two_pi = 2.506628274631000502415765284811;
+constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
+constexpr double negligible = 1e-10;  // terms with a smaller power of the correlation are left out of the sum
+
+double sum_of(const SeriesByRun& series) {
+  double sum = 0.0;
+  for (const auto& x : series)
+    for (const double value : x) sum += value;
+  return sum;
 }
-
-}  // namespace
-
-Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
-  return pit.unaryExpr([](double value) { return std::isnan(value) ? not_a_number : normal_score(value); });
-}
-
-RunScores score_run(const RunEvaluation& e) {
-  RunScores scores;
-  scores.likeliest = likeliest_modes(e);
-  scores.z = normal_scores(e.pit);
-  OutputSeries z(static_cast<std::size_t>(e.pit.rows()));
-  for (Eigen::Index k = 0; k < e.log_density.size(); ++k)
-    if (!std::isnan(e.log_density(k)))
-      for (std::size_t i = 0; i < z.size(); ++i)
-        if (const double score = scores.z(static_cast<Eigen::Index>(i), k); !std::isnan(score)) z[i].push_back(score);
-  scores.whiteness_p = whiteness_p(z);
-  return scores;
-}
-
-std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
-  std::vector<RunScores> scores;
-  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
-  return scores;
-}
-
-ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
-  // Sample k + 1 is the end of transition k, whose input is u[k].
-  return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
-}
-
-namespace {
 
 /// The runs of a series, relative to the mean of all runs.
 class CentredSeries {
@@ -78,54 +50,6 @@ class CentredSeries {
  private:
   std::vector<Eigen::ArrayXd> runs_;
 };
-
-}  // namespace
-
-double whiteness_p(const OutputSeries& z) {
-  std::vector<double> p_values;
-  for (const std::vector<double>& output : z) p_values.push_back(ljung_box_p(output));
-  return fisher_p(p_values);
-}
-
-double kolmogorov_distance(std::vector<double> values) {
-  if (values.empty()) return not_a_number;
-  std::sort(values.begin(), values.end());
-  const double count = static_cast<double>(values.size());
-  double distance = 0.0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const double below = static_cast<double>(i) / count, above = static_cast<double>(i + 1) / count;
-    distance = std::max({distance, above - values[i], values[i] - below});
-  }
-  return distance;
-}
-
-double ljung_box_p(const std::vector<double>& series) {
-  const CentredSeries centred({series});
-  const Eigen::Index N = static_cast<Eigen::Index>(series.size()),
-                     lags = std::min<Eigen::Index>(most_tested_lags, N / 5);
-  const double variance = centred.autocovariance(0);
-  if (lags < 1 || !(variance > 0.0)) return not_a_number;
-  Eigen::VectorXd autocorrelation(lags + 1);
-  for (Eigen::Index k = 0; k <= lags; ++k) autocorrelation(k) = centred.autocovariance(k) / variance;
-  return ljung_box_p(autocorrelation, N);
-}
-
-double fisher_p(const std::vector<double>& p_values) {
-  double statistic = 0.0, degrees_of_freedom = 0.0;
-  for (const double p : p_values) {
-    if (std::isnan(p)) continue;
-    statistic -= 2.0 * std::log(std::max(p, std::numeric_limits<double>::min()));
-    degrees_of_freedom += 2.0;
-  }
-  return degrees_of_freedom > 0.0 ? chi_square_upper_tail(statistic, degrees_of_freedom) : not_a_number;
-}
-
-namespace {
-
-constexpr double outer_tail = 0.025;
-constexpr double root_two_pi = 2.506628274631000502415765284811;
-constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
-constexpr double negligible = 1e-10;  // terms with a smaller power of the correlation are left out of the sum
 
 /// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs are positive. The first pair includes lag
 /// 0.
@@ -175,19 +99,94 @@ double tail_correlation(double r) {
   return sum * density * density / (outer_tail * (1.0 - outer_tail));
 }
 
+/// Mean distance per degree of freedom.
+double mean_per_degree(const SquaredDistances& d) {
+  return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
+}
+
+/// Deviation of each distance from its expected size, which is its degrees times the mean per degree. The mean of all
+/// deviations is zero.
+SeriesByRun deviations(const SquaredDistances& d) {
+  const double share = mean_per_degree(d);
+  SeriesByRun result = d.value;
+  for (std::size_t r = 0; r < result.size(); ++r)
+    for (std::size_t k = 0; k < result[r].size(); ++k) result[r][k] -= share * d.degrees[r][k];
+  return result;
+}
+
 }  // namespace
+
+Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
+  return pit.unaryExpr([](double value) { return std::isnan(value) ? not_a_number : normal_score(value); });
+}
+
+RunScores score_run(const RunEvaluation& e) {
+  RunScores scores{normal_scores(e.pit), Eigen::VectorXi::Zero(e.log_density.size())};
+  SeriesByRun z(static_cast<std::size_t>(e.pit.rows()));
+  for (Eigen::Index k = 0; k < e.log_density.size(); ++k) {
+    if (std::isnan(e.log_density(k))) continue;
+    if (e.mode_probability_predicted.rows() > 1) e.mode_probability_predicted.col(k).maxCoeff(&scores.likeliest(k));
+    for (std::size_t i = 0; i < z.size(); ++i)
+      if (const double score = scores.z(static_cast<Eigen::Index>(i), k); !std::isnan(score)) z[i].push_back(score);
+  }
+  scores.whiteness_p = whiteness_p(z);
+  return scores;
+}
+
+std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
+  std::vector<RunScores> scores;
+  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
+  return scores;
+}
+
+ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
+  // Sample k + 1 is the end of transition k, whose input is u[k].
+  return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
+}
+
+double whiteness_p(const SeriesByRun& z) {
+  std::vector<double> p_values;
+  for (const std::vector<double>& output : z) p_values.push_back(ljung_box_p(output));
+  return fisher_p(p_values);
+}
+
+double kolmogorov_distance(std::vector<double> values) {
+  if (values.empty()) return not_a_number;
+  std::sort(values.begin(), values.end());
+  const double count = static_cast<double>(values.size());
+  double distance = 0.0;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double below = static_cast<double>(i) / count, above = static_cast<double>(i + 1) / count;
+    distance = std::max({distance, above - values[i], values[i] - below});
+  }
+  return distance;
+}
+
+double ljung_box_p(const std::vector<double>& series) {
+  const CentredSeries centred({series});
+  const Eigen::Index N = static_cast<Eigen::Index>(series.size()),
+                     lags = std::min<Eigen::Index>(most_tested_lags, N / 5);
+  const double variance = centred.autocovariance(0);
+  if (lags < 1 || !(variance > 0.0)) return not_a_number;
+  Eigen::VectorXd autocorrelation(lags + 1);
+  for (Eigen::Index k = 0; k <= lags; ++k) autocorrelation(k) = centred.autocovariance(k) / variance;
+  return ljung_box_p(autocorrelation, N);
+}
+
+double fisher_p(const std::vector<double>& p_values) {
+  double statistic = 0.0, degrees_of_freedom = 0.0;
+  for (const double p : p_values) {
+    if (std::isnan(p)) continue;
+    statistic -= 2.0 * std::log(std::max(p, std::numeric_limits<double>::min()));
+    degrees_of_freedom += 2.0;
+  }
+  return degrees_of_freedom > 0.0 ? chi_square_upper_tail(statistic, degrees_of_freedom) : not_a_number;
+}
 
 double sample_count(const SeriesByRun& series) {
   double count = 0.0;
   for (const auto& x : series) count += static_cast<double>(x.size());
   return count;
-}
-
-double sum_of(const SeriesByRun& series) {
-  double sum = 0.0;
-  for (const auto& x : series)
-    for (const double value : x) sum += value;
-  return sum;
 }
 
 double mean_of(const SeriesByRun& series) {
@@ -220,25 +219,6 @@ double autocorrelation_time_of_tail(const SeriesByRun& series) {
 double cautious_time(double time, double samples) {
   return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
 }
-
-namespace {
-
-/// Mean distance per degree of freedom.
-double mean_per_degree(const SquaredDistances& d) {
-  return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
-}
-
-/// Deviation of each distance from its expected size, which is its degrees times the mean per degree. The mean of all
-/// deviations is zero.
-SeriesByRun deviations(const SquaredDistances& d) {
-  const double share = mean_per_degree(d);
-  SeriesByRun result = d.value;
-  for (std::size_t r = 0; r < result.size(); ++r)
-    for (std::size_t k = 0; k < result[r].size(); ++k) result[r][k] -= share * d.degrees[r][k];
-  return result;
-}
-
-}  // namespace
 
 void SquaredDistances::begin_run() {
   value.emplace_back();

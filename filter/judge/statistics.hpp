@@ -31,11 +31,6 @@ std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations)
 /// predicted transition. Throws std::invalid_argument if sizes disagree.
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options = {});
 
-/// Series of z, one vector per output.
-using OutputSeries = std::vector<std::vector<double>>;
-/// p value of the hypothesis that no output has autocorrelation; NaN if every series is too short.
-double whiteness_p(const OutputSeries& z);
-
 /// Kolmogorov's distance sup |F_n(u) - u| of the sample from the uniform distribution on [0, 1]; NaN without values.
 double kolmogorov_distance(std::vector<double> values);
 
@@ -49,9 +44,11 @@ double fisher_p(const std::vector<double>& p_values);
 /// A series per run, in time order.
 using SeriesByRun = std::vector<std::vector<double>>;
 
-double sample_count(const SeriesByRun& series);
-double sum_of(const SeriesByRun& series);
+/// p value of the hypothesis that no output has autocorrelation; NaN if every series is too short. `z`: one series per
+/// output.
+double whiteness_p(const SeriesByRun& z);
 
+double sample_count(const SeriesByRun& series);
 /// Mean over all values; NaN without values.
 double mean_of(const SeriesByRun& series);
 

@@ -18,6 +18,10 @@ namespace {
 using Eigen::Index;
 
 constexpr double sum_tolerance = 1e-9;  // of probabilities
+// One measurement does not determine all directions of the state. Undetermined directions start with this multiple of
+// the largest variance of Q and R. It is wide compared with what the filter will learn, and small enough for accurate
+// arithmetic.
+constexpr double unobserved_variance_factor = 1e4;
 
 void expect_size(const std::string& what, Index rows, Index cols, Index expected_rows, Index expected_cols) {
   if (rows == expected_rows && cols == expected_cols) return;
@@ -108,21 +112,13 @@ void check_running_noise(const Bank& bank) {
   TransitionMatrix{noise.switching};
 }
 
-StartMoments measured_lags(const Bank& bank) {
-  const Eigen::Index n = bank.structure.dimension(), n_y = bank.R.rows();
-  StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
-  const Eigen::MatrixXd R = bank.recording_noise();
-  for (Eigen::Index i = 0; i + n_y <= n; i += n_y) moments.covariance.block(i, i, n_y, n_y) = R;
-  return moments;
-}
-
 }  // namespace
 
 TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std::move(row_stochastic)) {
   if (matrix_.rows() != matrix_.cols() || matrix_.rows() == 0)
     throw std::invalid_argument("transition matrix is " + std::to_string(matrix_.rows()) + " x " +
                                 std::to_string(matrix_.cols()) + ", must be square and not empty");
-  for (Eigen::Index i = 0; i < matrix_.rows(); ++i) {
+  for (Index i = 0; i < matrix_.rows(); ++i) {
     const double sum = matrix_.row(i).sum();
     if (!(std::abs(sum - 1.0) <= sum_tolerance))
       throw std::invalid_argument("row " + std::to_string(i) + " of the transition matrix sums to " +
@@ -137,7 +133,7 @@ TransitionMatrix::TransitionMatrix(Eigen::MatrixXd row_stochastic) : matrix_(std
   }
 }
 
-TransitionMatrix TransitionMatrix::sticky(Eigen::Index modes, double stay) {
+TransitionMatrix TransitionMatrix::sticky(Index modes, double stay) {
   if (modes < 1) throw std::invalid_argument("a transition matrix needs at least 1 mode, not " + std::to_string(modes));
   if (!(stay >= 0.0 && stay <= 1.0))
     throw std::invalid_argument("stay is " + std::to_string(stay) + ", must be a probability");
@@ -184,7 +180,7 @@ Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& thet
 }
 
 bool has_one_theta(const Bank& bank) {
-  for (Eigen::Index k = 1; k < bank.mode_count(); ++k)
+  for (Index k = 1; k < bank.mode_count(); ++k)
     if (bank.theta(k) != bank.theta(0) || bank.modes[static_cast<std::size_t>(k)].bend != bank.modes.front().bend)
       return false;
   return bank.mode_count() > 1;
@@ -222,15 +218,18 @@ Eigen::MatrixXd Bank::recording_noise() const {
 }
 
 StartMoments start_moments(const Bank& bank) {
-  if (bank.structure.state_lags > 1) return measured_lags(bank);
+  const Index n = bank.structure.dimension(), n_y = bank.R.rows();
   const Eigen::MatrixXd R = bank.recording_noise();
+  if (bank.structure.state_lags > 1) {
+    StartMoments moments{Eigen::MatrixXd::Identity(n, n), Eigen::MatrixXd::Zero(n, n)};
+    for (Index i = 0; i + n_y <= n; i += n_y) moments.covariance.block(i, i, n_y, n_y) = R;
+    return moments;
+  }
   double largest = R.diagonal().maxCoeff();
   for (const Mode& mode : bank.modes) largest = std::max(largest, mode.Q.diagonal().maxCoeff());
-  const Eigen::Index n = bank.structure.dimension();
   const Eigen::MatrixXd C_pinv = bank.C.completeOrthogonalDecomposition().pseudoInverse();
   Eigen::MatrixXd P = C_pinv * R * C_pinv.transpose();
-  const Eigen::MatrixXd unobserved = Eigen::MatrixXd::Identity(n, n) - C_pinv * bank.C;
-  if (bank.C.rows() < n) P += unobserved_variance_factor * largest * unobserved;
+  if (n_y < n) P += unobserved_variance_factor * largest * (Eigen::MatrixXd::Identity(n, n) - C_pinv * bank.C);
   return {C_pinv, 0.5 * (P + P.transpose())};
 }
 

@@ -247,11 +247,6 @@ void validate(const Bank& bank);
 /// Checks the sizes only. Candidates of an optimiser may have extreme numbers.
 void check_sizes(const Bank& bank);
 
-/// One measurement does not determine all directions of the state. Undetermined directions start with this multiple of
-/// the largest variance of Q and R. It is wide compared with what the filter will learn, and small enough for accurate
-/// arithmetic.
-inline constexpr double unobserved_variance_factor = 1e4;
-
 /// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the first measurements of all samples in
 /// z are used; the gain is I, and each sample has the covariance R.
 struct StartMoments {

@@ -56,14 +56,6 @@ BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
                                 [](auto filter) { return std::make_unique<Equations>(Equations{std::move(filter)}); })),
       predicted_(C_.rows()),
       innovation_(C_.rows()) {
-  const Index n = bank.structure.dimension(), n_y = C_.rows();
-  estimate_.prediction.resize(n);
-  estimate_.innovation.resize(n_y);
-  estimate_.innovation_covariance.resize(n_y, n_y);
-  estimate_.state.resize(n);
-  estimate_.covariance.resize(n, n);
-  estimate_.pit.resize(n_y);
-  estimate_.pit_width.setZero(n_y);
   wait();
 }
 
@@ -74,27 +66,30 @@ BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
   feed_.push(time_s, input, measurement);
   if (feed_.steps() > longest_gap_steps) started_ = false;
-  if (started_)
-    std::visit([&](auto& filter) { take(filter, measurement); }, equations_->filter);
-  else if (feed_.can_start())
-    std::visit([&](auto& filter) { start(filter); }, equations_->filter);
-  else
+  if (!started_ && !feed_.can_start()) {
     wait();
+    return estimate_;
+  }
+  std::visit(
+      [&](auto& filter) {
+        if (started_) {
+          take(filter, measurement);
+        } else {
+          clear_prediction();
+          filter.start(feed_.start());
+          estimate_.mode_probability_predicted = filter.mode_probability();
+        }
+        filter.merge(estimate_.state, estimate_.covariance);
+        estimate_.mode_probability = filter.mode_probability();
+      },
+      equations_->filter);
+  started_ = true;
   return estimate_;
 }
 
 void BankFilter::restart() {
   started_ = false;
   feed_.clear();
-}
-
-template <class Filter>
-void BankFilter::start(Filter& filter) {
-  clear_prediction();
-  filter.start(feed_.start());
-  estimate_.mode_probability_predicted = filter.mode_probability();
-  record_posterior(filter);
-  started_ = true;
 }
 
 template <class Filter>
@@ -111,37 +106,29 @@ void BankFilter::take(Filter& filter, const Vector& measurement) {
     innovation_.observe(predicted_, measurement, estimate_);
     filter.transform(measurement, estimate_.pit, estimate_.pit_width, estimate_.log_density);
   }
-  record_posterior(filter);
-}
-
-template <class Filter>
-void BankFilter::record_posterior(Filter& filter) {
-  filter.merge(estimate_.state, estimate_.covariance);
-  estimate_.mode_probability = filter.mode_probability();
 }
 
 /// No prediction was made for this sample.
 void BankFilter::clear_prediction() {
-  estimate_.prediction.setConstant(not_a_number);
-  estimate_.innovation_covariance.setConstant(not_a_number);
+  estimate_.prediction.setConstant(C_.cols(), not_a_number);
+  estimate_.innovation_covariance.setConstant(C_.rows(), C_.rows(), not_a_number);
   estimate_.steps = 0;
   clear_scores();
 }
 
 void BankFilter::clear_scores() {
-  estimate_.innovation.setConstant(not_a_number);
-  estimate_.pit.setConstant(not_a_number);
-  estimate_.pit_width.setZero();
+  estimate_.innovation.setConstant(C_.rows(), not_a_number);
+  estimate_.pit.setConstant(C_.rows(), not_a_number);
+  estimate_.pit_width.setZero(C_.rows());
   estimate_.nis = estimate_.log_density = not_a_number;
 }
 
 /// Clears all values before a start.
 void BankFilter::wait() {
   clear_prediction();
-  estimate_.state.setConstant(not_a_number);
-  estimate_.covariance.setConstant(not_a_number);
-  estimate_.mode_probability_predicted = initial_probability_;
-  estimate_.mode_probability = initial_probability_;
+  estimate_.state.setConstant(C_.cols(), not_a_number);
+  estimate_.covariance.setConstant(C_.cols(), C_.cols(), not_a_number);
+  estimate_.mode_probability = estimate_.mode_probability_predicted = initial_probability_;
 }
 
 std::vector<StateForecast> BankFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) const {
@@ -179,47 +166,35 @@ namespace {
 
 constexpr double snapshot_format = 5.0;
 
-/// Appends the parts of a state to a list of numbers. The sizes of a matrix precede its entries.
-struct NumbersWriter {
-  std::vector<double>& numbers;
+/// Writes the parts of a state to a list of numbers, or reads them back. The sizes of a matrix precede its entries.
+struct Numbers {
+  std::vector<double>* written = nullptr;  ///< null: reads
+  std::span<const double> left = {};
 
-  void operator()(double value) const { numbers.push_back(value); }
-  void operator()(Index value) const { numbers.push_back(static_cast<double>(value)); }
-  template <class Derived>
-  void operator()(const Eigen::PlainObjectBase<Derived>& matrix) const {
-    (*this)(matrix.rows());
-    (*this)(matrix.cols());
-    numbers.insert(numbers.end(), matrix.data(), matrix.data() + matrix.size());
+  template <class... Part>
+  void exchange(std::tuple<Part&...> parts) {
+    std::apply([&](auto&... part) { ((*this)(part), ...); }, parts);
   }
-  template <class Part>
-  void operator()(const std::vector<Part>& parts) const {
-    for (const Part& part : parts) (*this)(part);
+  void operator()(double& value) {
+    if (written)
+      written->push_back(value);
+    else
+      value = next();
   }
-  template <int N>
-  void operator()(const Gaussian<N>& gaussian) const {
-    (*this)(gaussian.mean);
-    (*this)(gaussian.covariance);
-  }
-};
-
-/// Reads them into parts of the same sizes. Throws std::invalid_argument for other sizes.
-struct NumbersReader {
-  std::span<const double> left;
-
-  void operator()(double& value) { value = next(); }
   void operator()(Index& value) {
     constexpr double most = 9007199254740992.0;  // 2^53
-    const double number = next();
+    auto number = static_cast<double>(value);
+    (*this)(number);
     if (!(number >= 0.0 && number <= most && number == std::floor(number))) refuse();
     value = static_cast<Index>(number);
   }
   template <class Derived>
   void operator()(Eigen::PlainObjectBase<Derived>& matrix) {
-    Index rows = 0, cols = 0;
+    Index rows = matrix.rows(), cols = matrix.cols();
     (*this)(rows);
     (*this)(cols);
     if (rows != matrix.rows() || cols != matrix.cols()) refuse();
-    for (double& value : matrix.reshaped()) value = next();
+    for (double& value : matrix.reshaped()) (*this)(value);
   }
   template <class Part>
   void operator()(std::vector<Part>& parts) {
@@ -230,49 +205,46 @@ struct NumbersReader {
     (*this)(gaussian.mean);
     (*this)(gaussian.covariance);
   }
-  [[noreturn]] static void refuse() {
-    throw std::invalid_argument("the snapshot is damaged, or that of a filter with other sizes");
-  }
   double next() {
     if (left.empty()) refuse();
     const double value = left.front();
     left = left.subspan(1);
     return value;
   }
+  [[noreturn]] static void refuse() {
+    throw std::invalid_argument("the snapshot is damaged, or that of a filter with other sizes");
+  }
 };
-
-template <class Parts, class Numbers>
-void visit_parts(Parts parts, Numbers& numbers) {
-  std::apply([&](auto&... part) { (numbers(part), ...); }, parts);
-}
 
 }  // namespace
 
 std::vector<double> BankFilter::snapshot() const {
   std::vector<double> numbers{snapshot_format, started_ ? 1.0 : 0.0};
-  NumbersWriter write{numbers};
-  std::visit([&](const auto& filter) { visit_parts(filter.parts(), write); }, equations_->filter);
-  visit_parts(feed_.parts(), write);
+  Numbers write{&numbers};
+  Equations equations = *equations_;
+  SampleFeed feed = feed_;
+  std::visit([&](auto& filter) { write.exchange(filter.parts()); }, equations.filter);
+  write.exchange(feed.parts());
   return numbers;
 }
 
 void BankFilter::restore(std::span<const double> snapshot) {
-  NumbersReader read{snapshot};
+  Numbers read{nullptr, snapshot};
   if (read.next() != snapshot_format)
     throw std::invalid_argument("the snapshot comes from another version of the library, or not from a filter");
   const double started = read.next();
-  if (started != 0.0 && started != 1.0) NumbersReader::refuse();
+  if (started != 0.0 && started != 1.0) Numbers::refuse();
   Equations equations = *equations_;
   SampleFeed feed = feed_;
   std::visit(
       [&](auto& filter) {
-        visit_parts(filter.parts(), read);
+        read.exchange(filter.parts());
         filter.settle();
       },
       equations.filter);
-  visit_parts(feed.parts(), read);
+  read.exchange(feed.parts());
   feed.settle();
-  if (!read.left.empty()) NumbersReader::refuse();
+  if (!read.left.empty()) Numbers::refuse();
   *equations_ = std::move(equations);
   feed_ = feed;
   started_ = started == 1.0;

@@ -120,11 +120,7 @@ class BankFilter {
   bool started_ = false;
 
   template <class Filter>
-  void start(Filter& filter);
-  template <class Filter>
   void take(Filter& filter, const Eigen::Ref<const Eigen::VectorXd>& measurement);
-  template <class Filter>
-  void record_posterior(Filter& filter);
   void wait();
   void clear_prediction();
   void clear_scores();

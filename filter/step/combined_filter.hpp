@@ -28,6 +28,8 @@ class CombinedFilter {
   /// As BankFilter::step.
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
+  /// The result of the last step.
+  const FilterEstimate& estimate() const { return combines_ ? estimate_ : filters_.front().estimate(); }
   bool started() const { return filters_.front().started(); }
   void restart();
   /// As BankFilter::forecast. The filters that have started keep their present weights. Modes are those of the first.

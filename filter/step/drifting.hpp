@@ -87,7 +87,6 @@ class DriftingFilter {
   const Eigen::VectorXd& mode_probability() const { return one_; }
   DriftingForecast forecast() const;
   auto parts() { return std::tie(z_, theta_, P_, v_, level_); }
-  auto parts() const { return std::tie(z_, theta_, P_, v_, level_); }
   void settle() const;
 
   const Eigen::VectorXd& z() const { return z_; }                    ///< n * state_lags, newest sample first

@@ -22,12 +22,6 @@ void draw_pit(std::uint64_t of_run, Eigen::Index sample, const Eigen::Ref<const 
   }
 }
 
-namespace {
-
-constexpr double alarm_tail = 0.0005;  // tail probability on each side; a correct model has one such sample in 1000
-
-}  // namespace
-
 LiveJudge::LiveJudge(const Bank& bank)
     : C_(bank.C),
       interval_quantile_(normal_quantile(0.975)),  // normal quantile for 95 % intervals
@@ -36,6 +30,7 @@ LiveJudge::LiveJudge(const Bank& bank)
 const LiveVerdict& LiveJudge::judge(const FilterEstimate& estimate) {
   verdict_.predicted.noalias() = C_.lazyProduct(estimate.prediction);
   verdict_.alarm = false;
+  constexpr double alarm_tail = 0.0005;  // tail probability on each side; a correct model has one such sample in 1000
   for (Eigen::Index i = 0; i < C_.rows(); ++i) {
     const double half = interval_quantile_ * std::sqrt(estimate.innovation_covariance(i, i));
     verdict_.lower(i) = verdict_.predicted(i) - half;

@@ -22,12 +22,11 @@ void draw_pit(std::uint64_t of_run, Eigen::Index sample, const Eigen::Ref<const 
 struct LiveVerdict {
   Eigen::VectorXd predicted;     ///< n_y, predicted measurement
   Eigen::VectorXd lower, upper;  ///< n_y, predicted interval: +- quantile * sqrt(S_ii), by the moments of the mixture
-  bool alarm = false;            ///< whether some signal lies in one of the tails, whose total probability is `alarm`
+  bool alarm = false;            ///< whether some signal lies in one of the two tails of probability 0.0005
 };
 
 /// Judges samples by the filter's own uncertainty. The alarm uses the probability transform, which has the same
-/// distribution for every mixture; the NIS does not. If the model is correct and has one signal, the expected share of
-/// samples with an alarm is `alarm`.
+/// distribution for every mixture; the NIS does not. A correct model with one signal has one alarm in 1000 samples.
 class LiveJudge {
  public:
   explicit LiveJudge(const Bank& bank);

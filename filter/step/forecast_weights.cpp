@@ -28,6 +28,41 @@ void require_one_each(const std::vector<double>& weights, const std::vector<doub
                                 std::to_string(weights.size()) + " forecasters");
 }
 
+/// Densities of all forecasters for each sample, divided by the sample's largest density; NaN without a value.
+std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
+  const std::size_t forecasters = log_densities.size();
+  std::vector<double> densities, one(forecasters);
+  for (std::size_t k = 0; k < log_densities.front().size(); ++k) {
+    for (std::size_t i = 0; i < forecasters; ++i) one[i] = log_densities[i].at(k);
+    const double most = largest(one);
+    if (!std::isfinite(most)) continue;
+    for (const double value : one) densities.push_back(std::exp(value - most));
+  }
+  return densities;
+}
+
+/// One iteration of expectation-maximisation. A forecaster without a value for a sample keeps its weight.
+std::vector<double> likelier_weights(const std::vector<double>& weights, const std::vector<double>& densities) {
+  const std::size_t forecasters = weights.size();
+  std::vector<double> next(forecasters, 0.0);
+  for (std::size_t first = 0; first < densities.size(); first += forecasters) {
+    double mixed = 0.0, spoken = 0.0;
+    for (std::size_t i = 0; i < forecasters; ++i) {
+      if (std::isnan(densities[first + i])) continue;
+      mixed += weights[i] * densities[first + i];
+      spoken += weights[i];
+    }
+    for (std::size_t i = 0; i < forecasters; ++i) {
+      const double density = densities[first + i];
+      next[i] += std::isnan(density) || !(mixed > 0.0) ? weights[i] : weights[i] * density * spoken / mixed;
+    }
+  }
+  const double samples = std::accumulate(next.begin(), next.end(), 0.0);
+  if (!(samples > 0.0)) return weights;
+  for (double& weight : next) weight /= samples;
+  return next;
+}
+
 }  // namespace
 
 ForecastWeights::ForecastWeights(std::size_t forecasters, std::ptrdiff_t horizon)
@@ -76,45 +111,6 @@ void ForecastWeights::normalise() {
   for (double& weight : weights_) sum += weight = std::exp(std::max(weight - highest, least_log_weight));
   for (double& weight : weights_) weight /= sum;
 }
-
-namespace {
-
-/// Densities of all forecasters for each sample, divided by the sample's largest density; NaN without a value.
-std::vector<double> relative_densities(const std::vector<std::vector<double>>& log_densities) {
-  const std::size_t forecasters = log_densities.size();
-  std::vector<double> densities, one(forecasters);
-  for (std::size_t k = 0; k < log_densities.front().size(); ++k) {
-    for (std::size_t i = 0; i < forecasters; ++i) one[i] = log_densities[i].at(k);
-    const double most = largest(one);
-    if (!std::isfinite(most)) continue;
-    for (const double value : one) densities.push_back(std::exp(value - most));
-  }
-  return densities;
-}
-
-/// One iteration of expectation-maximisation. A forecaster without a value for a sample keeps its weight.
-std::vector<double> likelier_weights(const std::vector<double>& weights, const std::vector<double>& densities) {
-  const std::size_t forecasters = weights.size();
-  std::vector<double> next(forecasters, 0.0);
-  for (std::size_t first = 0; first < densities.size(); first += forecasters) {
-    double mixed = 0.0, spoken = 0.0;
-    for (std::size_t i = 0; i < forecasters; ++i) {
-      if (std::isnan(densities[first + i])) continue;
-      mixed += weights[i] * densities[first + i];
-      spoken += weights[i];
-    }
-    for (std::size_t i = 0; i < forecasters; ++i) {
-      const double density = densities[first + i];
-      next[i] += std::isnan(density) || !(mixed > 0.0) ? weights[i] : weights[i] * density * spoken / mixed;
-    }
-  }
-  const double samples = std::accumulate(next.begin(), next.end(), 0.0);
-  if (!(samples > 0.0)) return weights;
-  for (double& weight : next) weight /= samples;
-  return next;
-}
-
-}  // namespace
 
 std::vector<double> ForecastWeights::stacked(const std::vector<std::vector<double>>& log_densities) {
   constexpr int most_steps = 500;

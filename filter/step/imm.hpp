@@ -19,7 +19,7 @@
 /// five steps are:
 ///   1  mixing probabilities    mixing_weights
 ///   2  mixing                  mix
-///   3  mode-matched filtering  predict_modes, correct (kalman.hpp)
+///   3  mode-matched filtering  predict, correct (kalman.hpp)
 ///   4  mode probabilities      bayes, floor_probabilities
 ///   5  combination             merge
 /// The book leaves some cases open: modes that T forbids, likelihoods that underflow, missing signals. Comments below
@@ -180,16 +180,6 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
   for (; j < weights.cols(); ++j) merge_some<1, N>(parts, weights, j, merged.data() + j, exact);
 }
 
-/// Step 3, before the measurement: computes every mode's own prediction, and S_j.
-template <int N, int NY, class U>
-void predict_modes(const FilterModel<N, NY>& model, const std::vector<Gaussian<N>>& from, double noise_factor,
-                   const U& u, FilterStep<N, NY>& step) {
-  for (std::size_t j = 0; j < model.modes.size(); ++j) {
-    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_factor);
-    step.kalman[j].expect(model);
-  }
-}
-
 /// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes the mode's log
 /// likelihood log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals.
 template <int N, int NY, class Sensor, class Y>
@@ -224,12 +214,6 @@ inline void floor_probabilities(Eigen::VectorXd& mu) {
   double sum = 0.0;
   for (Eigen::Index j = 0; j < mu.size(); ++j) sum += mu(j) = std::max(mu(j), mode_probability_floor);
   mu *= 1.0 / sum;
-}
-
-/// Steps 3 and 4 without a measurement: the prediction becomes the estimate.
-template <int N, int NY>
-void keep_prediction(const FilterStep<N, NY>& step, FilterState<N>& state) {
-  for (std::size_t j = 0; j < state.modes.size(); ++j) state.modes[j] = step.kalman[j].predicted;
 }
 
 /// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, for comparison with the paper. Here are
@@ -303,13 +287,18 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
 /// Computes everything before the measurement: each mode's prediction and S, and the predicted probabilities.
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
-  predict_modes(model, mix(model, state, u, step), noise_of_step(model, state, u, step), u, step);
+  const std::vector<Gaussian<N>>& from = mix(model, state, u, step);
+  const double noise_factor = noise_of_step(model, state, u, step);
+  for (std::size_t j = 0; j < model.modes.size(); ++j) {
+    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_factor);
+    step.kalman[j].expect(model);
+  }
 }
 
-/// For a missing measurement: the prediction becomes the estimate.
+/// Steps 3 and 4 without a measurement: the prediction becomes the estimate.
 template <int N, int NY>
 void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
-  keep_prediction(step, state);
+  for (std::size_t j = 0; j < state.modes.size(); ++j) state.modes[j] = step.kalman[j].predicted;
   state.mode_probability = step.predicted_probability;
   floor_probabilities(state.mode_probability);
 }

@@ -101,9 +101,27 @@ class ImmFilter {
 
   /// The parts of a snapshot. After they have been read, `settle` checks them.
   auto parts() { return std::tie(state_.modes, state_.mode_probability); }
-  auto parts() const { return std::tie(state_.modes, state_.mode_probability); }
   /// Throws std::invalid_argument if the state is none.
-  void settle();
+  void settle() {
+    const Eigen::VectorXd& probability = state_.mode_probability;
+    bool finite = probability.allFinite() && probability.minCoeff() >= 0.0 && probability.sum() > 0.0 &&
+                  std::isfinite(probability.sum());
+    for (const Gaussian<N>& mode : state_.modes)
+      finite = finite && mode.mean.allFinite() && mode.covariance.allFinite();
+    if (!finite) throw std::invalid_argument("the snapshot has a number that is not finite or out of range");
+    for (const Gaussian<N>& mode : state_.modes)
+      if (!is_covariance(mode.covariance))
+        throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
+    // Rows that are known have the same mean in all modes, and zero covariance.
+    Eigen::Index uncertain = model_->structure.dimension();
+    const auto known = [&](Eigen::Index row) {
+      return has_one_mean<N>(state_.modes, row) &&
+             std::all_of(state_.modes.begin(), state_.modes.end(),
+                         [row](const Gaussian<N>& mode) { return (mode.covariance.col(row).array() == 0.0).all(); });
+    };
+    while (model_->exact && uncertain > 0 && known(uncertain - 1)) --uncertain;
+    for (Gaussian<N>& mode : state_.modes) mode.uncertain = uncertain;
+  }
 
  private:
   std::shared_ptr<const FilterModel<N, NY>> model_;
@@ -121,26 +139,5 @@ class ImmFilter {
     return sum;
   }
 };
-
-template <int N, int NY>
-void ImmFilter<N, NY>::settle() {
-  const Eigen::VectorXd& probability = state_.mode_probability;
-  bool finite = probability.allFinite() && probability.minCoeff() >= 0.0 && probability.sum() > 0.0 &&
-                std::isfinite(probability.sum());
-  for (const Gaussian<N>& mode : state_.modes) finite = finite && mode.mean.allFinite() && mode.covariance.allFinite();
-  if (!finite) throw std::invalid_argument("the snapshot has a number that is not finite or out of range");
-  for (const Gaussian<N>& mode : state_.modes)
-    if (!is_covariance(mode.covariance))
-      throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
-  // Rows that are known have the same mean in all modes, and zero covariance.
-  Eigen::Index uncertain = model_->structure.dimension();
-  const auto known = [&](Eigen::Index row) {
-    return has_one_mean<N>(state_.modes, row) &&
-           std::all_of(state_.modes.begin(), state_.modes.end(),
-                       [row](const Gaussian<N>& mode) { return (mode.covariance.col(row).array() == 0.0).all(); });
-  };
-  while (model_->exact && uncertain > 0 && known(uncertain - 1)) --uncertain;
-  for (Gaussian<N>& mode : state_.modes) mode.uncertain = uncertain;
-}
 
 }  // namespace modebank

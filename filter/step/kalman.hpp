@@ -78,20 +78,73 @@ struct KalmanStep {
   /// derivative of g at the mean. This is an extended Kalman filter, which is exact for P = 0.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u, double noise_factor);
+               const U& u, double noise_factor) {
+    propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
+    for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
+      predicted.mean(i) = from.mean(i - model.full_rows);
+    const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
+    predicted.covariance = noise_factor * mode.Q;
+    predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
+    if (from.uncertain > 0) {
+      const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
+      small::multiply_shifting(NN_, F, from.covariance, full, inner);
+      small::add_symmetric_product_shifting(predicted.covariance, NN_, F, full, inner);
+    }
+    make_usable(predicted);
+  }
   /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
   /// model, or its part for the available signals.
   template <class Sensor>
-  void expect(const Sensor& sensor);
+  void expect(const Sensor& sensor) {
+    small::multiply_transposed(PCt_, predicted.covariance, sensor.C, small::or_all<N>(sensor.seen_columns));
+    innovation_covariance = sensor.R;
+    small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
+    cholesky.factorise(innovation_covariance);
+  }
   /// Computes the innovation e and its log density.
   template <class Sensor, class Y>
-  void observe(const Sensor& sensor, const Y& y);
+  void observe(const Sensor& sensor, const Y& y) {
+    small::multiply(innovation, sensor.C, predicted.mean);
+    innovation = y - innovation;
+    decorrelated = innovation;
+    log_density = log_normal(decorrelated);
+  }
   /// State after the measurement, covariance in Joseph's form.
   template <class Sensor, class Y>
-  void correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
+  void correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
+    posterior.uncertain = predicted.uncertain;
+    if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
+      posterior.mean = predicted.mean;
+      posterior.covariance.setZero();
+      posterior.uncertain = 0;
+      return take_exactly(sensor, y, posterior);
+    }
+    for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
+      gain_.row(i) = PCt_.row(i);
+      cholesky.solve(gain_.row(i));
+    }
+    small::multiply(posterior.mean, gain_, innovation);
+    posterior.mean += predicted.mean;
+    small::multiply(closed_loop_, gain_, sensor.C);
+    closed_loop_ = -closed_loop_;
+    const Eigen::Index seen = small::or_all<N>(sensor.seen_columns);
+    closed_loop_.diagonal().array() += 1.0;
+    small::multiply_seeing(NN_, closed_loop_, predicted.covariance, seen);
+    posterior.covariance.setZero();
+    small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, seen);
+    small::multiply(NY_, gain_, sensor.R);
+    small::add_symmetric_product(posterior.covariance, NY_, gain_);
+    if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
+    bound_variances(predicted, posterior);
+    if (sensor.exact) take_exactly(sensor, y, posterior);
+  }
   /// log N(residual; 0, S) for any residual. `residual` is decorrelated in place.
   template <class Vector>
-  double log_normal(Vector& residual) const;
+  double log_normal(Vector& residual) const {
+    cholesky.decorrelate(residual);
+    return measured_density(-0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
+                                    cholesky.squared_distance(residual)));
+  }
 
  private:
   Eigen::Matrix<double, N, N> NN_;
@@ -104,111 +157,27 @@ struct KalmanStep {
 
   /// Copies the rows that an exact sensor measures. A correction would add rounding errors.
   template <class Sensor, class Y>
-  static void take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior);
+  static void take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
+    const Eigen::Index seen = sensor.seen_columns;
+    posterior.mean.head(seen) = y;
+    posterior.covariance.topRows(seen).setZero();
+    posterior.covariance.leftCols(seen).setZero();
+  }
   /// Adds the terms to the predicted mean, and their derivatives to F.
   template <class U>
   const Eigen::Matrix<double, N, N>& bend(const FilterModel<N, NY>& model,
                                           const typename FilterModel<N, NY>::Mode& mode,
-                                          const Eigen::Matrix<double, N, 1>& x, const U& u);
+                                          const Eigen::Matrix<double, N, 1>& x, const U& u) {
+    fill_regressor(model.structure, x, u, phi_);
+    terms_.evaluate(model.terms, phi_);
+    bent_F_ = mode.F;
+    const Eigen::MatrixXd& slope = terms_.slope();
+    for (Eigen::Index a = 0; a < mode.bend.rows(); ++a) {
+      predicted.mean(a) += mode.bend.row(a).dot(terms_.value());
+      for (Eigen::Index i = 0; i < bent_F_.cols(); ++i) bent_F_(a, i) += mode.bend.row(a).dot(slope.col(i));
+    }
+    return bent_F_;
+  }
 };
-
-template <int N, int NY>
-template <class U>
-void KalmanStep<N, NY>::predict(const Gaussian<N>& from, const FilterModel<N, NY>& model,
-                                const typename FilterModel<N, NY>::Mode& mode, const U& u, double noise_factor) {
-  propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
-  for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
-    predicted.mean(i) = from.mean(i - model.full_rows);
-  const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
-  predicted.covariance = noise_factor * mode.Q;
-  predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
-  if (from.uncertain > 0) {
-    const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
-    small::multiply_shifting(NN_, F, from.covariance, full, inner);
-    small::add_symmetric_product_shifting(predicted.covariance, NN_, F, full, inner);
-  }
-  make_usable(predicted);
-}
-
-template <int N, int NY>
-template <class U>
-const Eigen::Matrix<double, N, N>& KalmanStep<N, NY>::bend(const FilterModel<N, NY>& model,
-                                                           const typename FilterModel<N, NY>::Mode& mode,
-                                                           const Eigen::Matrix<double, N, 1>& x, const U& u) {
-  fill_regressor(model.structure, x, u, phi_);
-  terms_.evaluate(model.terms, phi_);
-  bent_F_ = mode.F;
-  const Eigen::MatrixXd& slope = terms_.slope();
-  for (Eigen::Index a = 0; a < mode.bend.rows(); ++a) {
-    predicted.mean(a) += mode.bend.row(a).dot(terms_.value());
-    for (Eigen::Index i = 0; i < bent_F_.cols(); ++i) bent_F_(a, i) += mode.bend.row(a).dot(slope.col(i));
-  }
-  return bent_F_;
-}
-
-template <int N, int NY>
-template <class Sensor>
-void KalmanStep<N, NY>::expect(const Sensor& sensor) {
-  small::multiply_transposed(PCt_, predicted.covariance, sensor.C, small::or_all<N>(sensor.seen_columns));
-  innovation_covariance = sensor.R;
-  small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
-  cholesky.factorise(innovation_covariance);
-}
-
-template <int N, int NY>
-template <class Sensor, class Y>
-void KalmanStep<N, NY>::observe(const Sensor& sensor, const Y& y) {
-  small::multiply(innovation, sensor.C, predicted.mean);
-  innovation = y - innovation;
-  decorrelated = innovation;
-  log_density = log_normal(decorrelated);
-}
-
-template <int N, int NY>
-template <class Vector>
-double KalmanStep<N, NY>::log_normal(Vector& residual) const {
-  cholesky.decorrelate(residual);
-  return measured_density(-0.5 * (static_cast<double>(residual.size()) * log_two_pi + cholesky.log_determinant() +
-                                  cholesky.squared_distance(residual)));
-}
-
-template <int N, int NY>
-template <class Sensor, class Y>
-void KalmanStep<N, NY>::correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
-  posterior.uncertain = predicted.uncertain;
-  if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
-    posterior.mean = predicted.mean;
-    posterior.covariance.setZero();
-    posterior.uncertain = 0;
-    return take_exactly(sensor, y, posterior);
-  }
-  for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
-    gain_.row(i) = PCt_.row(i);
-    cholesky.solve(gain_.row(i));
-  }
-  small::multiply(posterior.mean, gain_, innovation);
-  posterior.mean += predicted.mean;
-  small::multiply(closed_loop_, gain_, sensor.C);
-  closed_loop_ = -closed_loop_;
-  const Eigen::Index seen = small::or_all<N>(sensor.seen_columns);
-  closed_loop_.diagonal().array() += 1.0;
-  small::multiply_seeing(NN_, closed_loop_, predicted.covariance, seen);
-  posterior.covariance.setZero();
-  small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, seen);
-  small::multiply(NY_, gain_, sensor.R);
-  small::add_symmetric_product(posterior.covariance, NY_, gain_);
-  if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
-  bound_variances(predicted, posterior);
-  if (sensor.exact) take_exactly(sensor, y, posterior);
-}
-
-template <int N, int NY>
-template <class Sensor, class Y>
-void KalmanStep<N, NY>::take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
-  const Eigen::Index seen = sensor.seen_columns;
-  posterior.mean.head(seen) = y;
-  posterior.covariance.topRows(seen).setZero();
-  posterior.covariance.leftCols(seen).setZero();
-}
 
 }  // namespace modebank

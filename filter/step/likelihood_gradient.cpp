@@ -197,18 +197,13 @@ class ReversePass {
     by.covariance = (F.transpose() * by.covariance * F).eval();
   }
 
-  StateVector combined_mean(const FilterState<N>& state) const {
-    StateVector mean(state.modes[0].mean.size());
-    combine_means(state, mean);
-    return mean;
-  }
-
   /// Goes back over the mixing. Every mode starts from the mixture of all modes with weights W_ij = T_ij mu_i / c_j.
   /// Its mean M_j and second moment S_j about any point r, which the result does not depend on, are linear in W and in
   /// the moments d_i = m_i - r and P_i + d_i d_i' of the modes before; its covariance is S_j - M_j M_j'.
   void back_over_mixing(const FilterStep<N, NY>& step, const FilterState<N>& before) {
     const Index K = model_.mode_count(), n = model_.structure.dimension();
-    const StateVector r = combined_mean(before);  // near the means, so that their differences keep their digits
+    StateVector r(n);
+    combine_means(before, r);  // near the means, so that their differences keep their digits
     for (Index j = 0; j < K; ++j) {
       const Gaussian<N>& from = before.modes[static_cast<std::size_t>(j)];
       const Gaussian<N>& to = by_.modes[static_cast<std::size_t>(j)];

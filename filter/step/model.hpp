@@ -46,54 +46,51 @@ struct FilterModel {
   bool exact;
 
   /// Requires check_sizes(bank). Throws std::invalid_argument for FilterVariant::kf with several modes.
-  FilterModel(const Bank& bank, const FilterOptions& options);
+  FilterModel(const Bank& bank, const FilterOptions& options)
+      : structure(bank.structure),
+        variant(options.variant),
+        C(bank.C),
+        R(bank.recording_noise()),
+        quantum(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
+        transition(bank.transition),
+        transition_logit(bank.transition_logit),
+        initial_probability(bank.initial_probability),
+        terms(bank.terms),
+        noise_factor(bank.noise_factor) {
+    if (variant == FilterVariant::kf && bank.mode_count() != 1)
+      throw std::invalid_argument("a Kalman filter (kf) needs a bank of one mode; this one has " +
+                                  std::to_string(bank.mode_count()));
+    if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
+      throw std::invalid_argument(
+          "the paper's equations (salvi2025) do not support switching by state and input; use imm");
+    if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
+      throw std::invalid_argument(
+          "the paper's equations (salvi2025) need constant noise; the noise of this bank depends on state and input");
+    for (const modebank::Mode& mode : bank.modes) {
+      modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
+    }
+    full_rows = rows_without_shifts();
+    seen_columns = C.cols();
+    while (seen_columns > 1 && (C.col(seen_columns - 1).array() == 0.0).all()) --seen_columns;
+    exact = structure.state_lags > 1 && variant != FilterVariant::salvi2025 && R.isZero(0.0) &&
+            seen_columns == C.rows() && C.leftCols(seen_columns).isIdentity(0.0);
+    const StartMoments start = start_moments(bank);
+    start_gain = start.gain;
+    start_covariance = start.covariance;
+  }
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
-};
 
-/// A bank from another program may have lags whose rows are not shifts.
-template <int N, int NY>
-Eigen::Index full_rows_of(const FilterModel<N, NY>& model) {
-  const Eigen::Index n = model.structure.dimension(), states = model.structure.states;
-  for (const auto& mode : model.modes)
-    for (Eigen::Index i = states; i < n; ++i)
-      if (mode.F.row(i) != Eigen::RowVectorXd::Unit(n, i - states)) return n;
-  return states;
-}
-
-template <int N, int NY>
-FilterModel<N, NY>::FilterModel(const Bank& bank, const FilterOptions& options)
-    : structure(bank.structure),
-      variant(options.variant),
-      C(bank.C),
-      R(bank.recording_noise()),
-      quantum(bank.is_quantised() ? bank.quantum : Eigen::VectorXd()),
-      transition(bank.transition),
-      transition_logit(bank.transition_logit),
-      initial_probability(bank.initial_probability),
-      terms(bank.terms),
-      noise_factor(bank.noise_factor) {
-  if (variant == FilterVariant::kf && bank.mode_count() != 1)
-    throw std::invalid_argument("a Kalman filter (kf) needs a bank of one mode; this one has " +
-                                std::to_string(bank.mode_count()));
-  if (variant == FilterVariant::salvi2025 && !transition_logit.empty())
-    throw std::invalid_argument(
-        "the paper's equations (salvi2025) do not support switching by state and input; use imm");
-  if (variant == FilterVariant::salvi2025 && !noise_factor.empty())
-    throw std::invalid_argument(
-        "the paper's equations (salvi2025) need constant noise; the noise of this bank depends on state and input");
-  for (const modebank::Mode& mode : bank.modes) {
-    modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
+ private:
+  /// A bank from another program may have lags whose rows are not shifts.
+  Eigen::Index rows_without_shifts() const {
+    const Eigen::Index n = structure.dimension();
+    for (const Mode& mode : modes)
+      for (Eigen::Index i = structure.states; i < n; ++i)
+        if (mode.F.row(i) != Eigen::RowVectorXd::Unit(n, i - structure.states)) return n;
+    return structure.states;
   }
-  full_rows = full_rows_of(*this);
-  seen_columns = C.cols();
-  while (seen_columns > 1 && (C.col(seen_columns - 1).array() == 0.0).all()) --seen_columns;
-  exact = structure.state_lags > 1 && variant != FilterVariant::salvi2025 && R.isZero(0.0) &&
-          seen_columns == C.rows() && C.leftCols(seen_columns).isIdentity(0.0);
-  const StartMoments start = start_moments(bank);
-  start_gain = start.gain;
-  start_covariance = start.covariance;
-}
+};
 
 /// Calls f.template operator()<N, NY>(), with fixed sizes if these are faster. This is the only place where run-time
 /// sizes become compile-time sizes.

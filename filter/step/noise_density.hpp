@@ -2,7 +2,10 @@
 
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <string>
 
+#include "ident/base/distributions.hpp"
 #include "ident/base/log_two_pi.hpp"
 
 namespace modebank {
@@ -31,7 +34,15 @@ inline double log_normal_mass(double middle, double width) {
 class StudentNoise {
  public:
   /// Throws std::invalid_argument unless `degrees` is 0 or above 2. For 2 or less the variance would be infinite.
-  explicit StudentNoise(double degrees);
+  explicit StudentNoise(double degrees) : degrees_(degrees), log_constant_(-0.5 * log_two_pi) {
+    if (degrees != 0.0 && !(degrees > 2.0 && std::isfinite(degrees)))
+      throw std::invalid_argument(
+          "degrees of freedom of Student's t must be above 2, or 0 for the normal distribution: " +
+          std::to_string(degrees));
+    if (!gaussian())
+      log_constant_ = std::lgamma(0.5 * (degrees + 1.0)) - std::lgamma(0.5 * degrees) -
+                      0.5 * std::log(std::numbers::pi * (degrees - 2.0));
+  }
 
   double degrees() const { return degrees_; }
   bool gaussian() const { return degrees_ == 0.0; }
@@ -43,9 +54,20 @@ class StudentNoise {
                       : log_constant_ - 0.5 * (degrees_ + 1.0) * std::log1p(square / (degrees_ - 2.0));
   }
   /// P(X <= value).
-  double probability(double value) const;
+  double probability(double value) const {
+    if (gaussian()) return normal_cdf(value);
+    return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
+  }
   /// log P(|X - middle| <= width / 2), with width > 0.
-  double log_mass(double middle, double width) const;
+  double log_mass(double middle, double width) const {
+    if (gaussian()) return log_normal_mass(middle, width);
+    // If an interval is narrow compared with its distance from zero, the difference loses digits. The probability is
+    // then computed from the density.
+    constexpr double narrow = 1e-3;
+    if (width < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(width);
+    const double high = 0.5 * width - std::abs(middle);  // the lower tail has more accurate digits
+    return std::log(probability(high) - probability(high - width));
+  }
 
  private:
   double degrees_, log_constant_;

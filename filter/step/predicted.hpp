@@ -34,6 +34,7 @@ void combine(const FilterModel<N, NY>& model, FilterStep<N, NY>& step, Eigen::Ve
 struct NormalMixture {
   Eigen::VectorXd weight, mean, deviation;
 
+  double mixture_mean() const { return weight.dot(mean); }
   double probability(double y) const {
     double sum = 0.0;
     for (Eigen::Index j = 0; j < weight.size(); ++j) sum += weight(j) * normal_cdf((y - mean(j)) / deviation(j));

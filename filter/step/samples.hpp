@@ -54,7 +54,6 @@ class SampleFeed {
 
   /// The parts of a snapshot. After they have been read, `settle` checks them.
   auto parts() { return std::tie(recent_, measurements_, samples_, whole_, time_s_); }
-  auto parts() const { return std::tie(recent_, measurements_, samples_, whole_, time_s_); }
   /// Throws std::invalid_argument if they cannot be those of a feed.
   void settle() const;
 
