@@ -90,16 +90,14 @@ Answer answer_by_scores(const Finding& finding) {
   if (!finding.repeating.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
-  if (any([](const PairedGain& gain) { return gain.gain <= 0.0 || gain.gain + gain.margin < negligible_gain; }))
-    return Answer::no_evidence;
+  if (any([](const PairedGain& gain) { return gain.gain + gain.margin < negligible_gain; })) return Answer::no_evidence;
   if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
   if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !is_beaten(gain); })) return Answer::cannot_tell;
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
 
-/// The answer. All competitors have the lags of the bank. While lags are missing, gains over competitors therefore do
-/// not prove modes.
+/// The answer. While lags are missing, gains over competitors do not prove modes.
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   const Answer answer = answer_by_scores(finding);

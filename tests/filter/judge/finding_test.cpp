@@ -79,12 +79,13 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   EXPECT_EQ(finding.answer, Answer::cannot_tell);
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
   EXPECT_LE(least_beaten(finding)->gain, least_beaten(finding)->margin);
+  noisy.bank_gain = 0.12;  // a loss, but one that chance gives as well
+  EXPECT_LT(noisy.judged().gain, 0.0);
+  EXPECT_EQ(noisy.judged().answer, Answer::cannot_tell);
   Case few;
   for (Densities& competitor : few.competitors)
     for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
-  for (Densities& competitor : few.competitors) competitor.of_runs.resize(6);
-  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs are enough for a comparison by
-                                                     // runs
+  EXPECT_EQ(few.judged().answer, Answer::evidence);  // two samples in each of six runs are enough
   for (Densities& competitor : few.competitors)
     for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
@@ -189,7 +190,8 @@ TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
   EXPECT_TRUE(modes_differ(Case().bank));
 }
 
-// Without standard errors (after a look-ahead fit, or if theta is undetermined), the modes may be alike.
+// Without standard errors (after a fit to predictions several steps ahead, or if theta is undetermined), the modes may
+// be alike.
 TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   Case unknown;
   unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
@@ -202,10 +204,9 @@ TEST(Finding, ModesOfUnknownErrorsTellNothing) {
   Case some;  // one parameter with a known error separates the modes
   some.bank.modes[0].standard_error(0) = std::nan("");
   EXPECT_EQ(some.judged().answer, Answer::evidence);
-  Case worse = unknown;
-  worse.bank = Case::with_errors(Case().bank, std::nan(""));
-  worse.bank_gain = 0.0;
-  EXPECT_EQ(worse.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
+  unknown.bank = Case::with_errors(Case().bank, std::nan(""));
+  unknown.bank_gain = 0.0;
+  EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
 }
 
 // The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 nats more. This makes the t-test
@@ -293,12 +294,7 @@ TEST(Finding, RepeatedMeasurementsAreNotJudgedByDensities) {
 }
 
 SummaryRow pooled(const char* filter, double rmse) {
-  SummaryRow row;
-  row.filter = filter;
-  row.role = Role::test;
-  row.run = "*";
-  row.rmse = VectorXd::Constant(1, rmse);
-  return row;
+  return {filter, Role::test, "*", 0, 0.0, VectorXd::Constant(1, rmse)};
 }
 
 TEST(Finding, WhatOneModelLeavesNoNoiseOfHasOneMode) {
