@@ -10,7 +10,6 @@
 #include "app/text/mode_dynamics.hpp"
 #include "app/text/mode_names.hpp"
 #include "filter/learn/chain/chain.hpp"
-#include "filter/learn/chain/training_check.hpp"
 #include "io/import/import.hpp"
 
 namespace modebank {
@@ -68,8 +67,8 @@ const Archive& Chain::run(const ChainOptions& options, Stage last, const Executi
   if (last >= Stage::bank_scores)
     judge(inputs_);
   else if (archive_.windows)
-    put(test_global(*archive_.recording, *archive_.windows, inputs_.windows.window));
-  archive_.mode_names = mode_names_of(archive_, options.mode_names, listener_);
+    put(test_global(*archive_.recording, *archive_.windows, inputs_.windows));
+  archive_.mode_names = mode_names_of(archive_, options.mode_names, tell_);
   describe(execution, {});
   return archive_;
 }
@@ -79,12 +78,12 @@ void Chain::import(const DataInputs& inputs) {
     const Stopwatch watch;
     data_ = import_data(inputs.data, memory_);
     archive_.provenance.data_hash = data_.data_hash;  // listeners may need the data's hash
-    for (const std::string& note : data_.notes) listener_.warning(note);
+    for (const std::string& note : data_.notes) tell_(Level::warning, note);
     static_cast<DataPart&>(archive_) = {std::move(data_.recording), std::move(data_.labels), data_.step_scatter,
                                         std::move(data_.lag)};
-    listener_.progress(fmt::format("import: {} runs, {} training and {} test transitions in {:.2f} s",
-                                   archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
-                                   archive_.recording->transitions(Role::test), watch.seconds()));
+    tell_(Level::progress, fmt::format("import: {} runs, {} training and {} test transitions in {:.2f} s",
+                                       archive_.recording->runs.size(), archive_.recording->transitions(Role::train),
+                                       archive_.recording->transitions(Role::test), watch.seconds()));
   };
   const auto give = [&] {
     Archive part = part_out_of<DataPart>(archive_);
@@ -105,16 +104,16 @@ void Chain::learn(const ChainOptions& options, Stage last) {
   LearningHooks hooks;
   hooks.provide = [&](Stage stage, const LearningInputs& inputs, const std::function<void()>& compute) {
     static_cast<LearningInputs&>(inputs_) = inputs;
-    inputs_.competitor_scores.window = inputs.windows.window;
+    inputs_.competitor_scores.window = inputs.windows;
     const std::string data_key = wanted_[index_of(Stage::data)];
     wanted_ = stage_keys(inputs_, data_.data_hash);
     wanted_[index_of(Stage::data)] = data_key;
     provide_learned(stage, compute);
   };
-  // Scattered sample periods make one motion look like several modes. Then only the time constant of least squares is
-  // right.
-  const bool one_model = archive_.step_scatter > most_step_scatter;
-  learn_all(*archive_.recording, options, last, one_model, hooks, listener_, archive_);
+  hooks.tell = tell_;
+  LearningOptions learning = options;
+  learning.one_model = archive_.step_scatter > most_step_scatter;
+  learn_all(*archive_.recording, learning, last, hooks, archive_);
 }
 
 void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
@@ -137,7 +136,7 @@ void Chain::provide_learned(Stage stage, const std::function<void()>& compute) {
 
 void Chain::provide_windows(const std::function<void()>& compute) {
   constexpr double written_per_s = 1e5;  // windows that a slow disk writes per second, with their samples
-  const WindowInputs& inputs = inputs_.windows;
+  const FitOptions& window = inputs_.windows;
   const auto in_its_section = [&] { in_section("window", compute); };
   const auto give = [&] {
     Archive part = part_out_of<WindowsPart>(archive_);
@@ -149,7 +148,7 @@ void Chain::provide_windows(const std::function<void()>& compute) {
     take_part<WindowsPart>(std::move(part), archive_);
   };
   const double windows =
-      static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(inputs.window.step);
+      static_cast<double>(archive_.recording->transitions(Role::train)) / static_cast<double>(window.step);
   provide(Stage::windows, {in_its_section, give, take, windows / written_per_s});
 }
 

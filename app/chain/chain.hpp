@@ -86,6 +86,7 @@ class Chain {
 
   StageSource& source_;
   const Listener& listener_;
+  const Tell tell_ = [this](Level level, const std::string& line) { listener_.tell(level, line); };
   const MemoryTables* memory_;
   Archive archive_;
   ImportedData data_;  ///< files and hash of the recording, as imported

@@ -62,7 +62,7 @@ void Chain::put_scores(Archive&& part) {
 void Chain::warn_of_free_runs() const {
   for (const FilterEvaluation& evaluation : archive_.evaluations)
     for (const std::string& line : remarks(evaluation.filter, archive_.recording->runs, evaluation.free_runs))
-      listener_.warning(line);
+      tell_(Level::warning, line);
 }
 
 void Chain::forget(const std::string& filter) {
@@ -103,7 +103,8 @@ void Chain::judge(const ChainInputs& inputs) {
   const auto give = [&] { return scores_out_of(archive_, {"bank"}); };
   provide(Stage::bank_scores, {score_bank, give, [&](Archive&& part) { put_scores(std::move(part)); }});
   conclude(inputs.bank_scores.filter, inputs.bank_scores.scoring);
-  listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
+  tell_(Level::progress,
+        fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
 }
 
 const Archive& Chain::judge_stored(const std::filesystem::path& banks, const ChainOptions& options,
@@ -113,7 +114,7 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   import({options.data});
   const Stopwatch watch;
   // For a single model (`FilterVariant::kf`) this reads the global model, as the stages of learning do.
-  StoredBanks stored = read_banks(banks, *archive_.recording, options.filter.variant == FilterVariant::kf, listener_);
+  StoredBanks stored = read_banks(banks, *archive_.recording, options.filter.variant == FilterVariant::kf, tell_);
   archive_.bank = std::move(stored.bank);
   archive_.baseline = std::move(stored.baseline);
   archive_.noise_only = std::move(stored.noise_only);
@@ -129,8 +130,9 @@ const Archive& Chain::judge_stored(const std::filesystem::path& banks, const Cha
   for (const char* filter : competitor_names) score(filter, competitor_filter(filter), scoring);
   conclude(options.filter, scoring);
   archive_.mode_names =
-      mode_names_of(archive_, options.mode_names.empty() ? stored.mode_names : options.mode_names, listener_);
-  listener_.progress(fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
+      mode_names_of(archive_, options.mode_names.empty() ? stored.mode_names : options.mode_names, tell_);
+  tell_(Level::progress,
+        fmt::format("evaluation: {} filters in {:.2f} s", archive_.evaluations.size(), watch.seconds()));
   describe(execution, {describe_file(banks)});
   return archive_;
 }

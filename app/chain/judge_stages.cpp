@@ -14,6 +14,8 @@
 #include "filter/judge/scores.hpp"
 #include "filter/judge/statistics.hpp"
 #include "ident/base/work_counter.hpp"
+#include "ident/fit/fit_windows.hpp"
+#include "ident/fit/linearise.hpp"
 #include "ident/model/residual_tests.hpp"
 
 namespace modebank {
@@ -184,7 +186,8 @@ std::optional<FilterScores> score_combined(const FilterOptions& filter, const Sc
 }
 
 ResidualTestSet test_global(const Recording& recording, const WindowFits& windows, const FitOptions& window) {
-  const Eigen::VectorXd theta = linear_global(recording, windows, window).theta;
+  const auto motion = motion_model(window, recording.state_count(), recording.input_count());
+  const Eigen::VectorXd theta = linear_global(recording, windows, motion.get()).theta;
   ResidualTestSet set{"global", std::vector<ResidualTests>(recording.runs.size())};
   tbb::parallel_for(std::size_t{0}, recording.runs.size(),
                     [&](std::size_t i) { set.runs[i] = test_residuals(recording.runs[i], windows.structure, theta); });

@@ -40,15 +40,16 @@ void Adviser::done(Stage stage, const Archive& archive) const {
   }
   // A refined bank keeps nothing of the mixture, so warnings about the mixture do not apply.
   if (stage == Stage::bank && archive.mixture && !archive.unrefined)
-    for (const std::string& text : selection_warnings(archive.mixture->candidates)) warning("mixture: " + text);
+    for (const std::string& text : selection_warnings(archive.mixture->candidates))
+      tell(Level::warning, "mixture: " + text);
   if (const std::string text = refinement_warning(archive.measured_fit); stage == Stage::bank && !text.empty())
-    warning("refine: " + text);
+    tell(Level::warning, "refine: " + text);
   if (stage == Stage::bank_scores)
-    if (const std::string text = unscored_warning(archive); !text.empty()) warning("scores: " + text);
+    if (const std::string text = unscored_warning(archive); !text.empty()) tell(Level::warning, "scores: " + text);
 }
 
 void Adviser::warn_of_windows(const WindowCounts& counts) const {
-  if (const std::string found = window_warning(counts); !found.empty()) warning("windows: " + found);
+  if (const std::string found = window_warning(counts); !found.empty()) tell(Level::warning, "windows: " + found);
 }
 
 void check_request(const Config& config, const std::filesystem::path& file, const MemoryTables* memory) {

@@ -72,24 +72,20 @@ MODEBANK_KEY_FIELDS(SelectionOptions, components, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, look_ahead, look_ahead_score, folds,
                     measurement_noise, screen, state_dependent_transition, one_theta, noise_by_input, seed, transitions)
-MODEBANK_KEY_FIELDS(BankOptions, theta, noise, transition, stay, process_variance, measurement_variance, screen, refine,
-                    em)
+MODEBANK_KEY_FIELDS(BankOptions, theta, transition, stay, process_variance, measurement_variance, screen, refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, paths, seed)
 MODEBANK_KEY_FIELDS(ScoringOptions, horizon, free_run, seed)
 
 MODEBANK_KEY_FIELDS(SearchedLags, state, input, delay, most_samples)
 MODEBANK_KEY_FIELDS(DataInputs, data)
-MODEBANK_KEY_FIELDS(WindowInputs, window)
 MODEBANK_KEY_FIELDS(MixtureInputs, window, mixture, seed)
 MODEBANK_KEY_FIELDS(StageLags, state_lags, input_lags, input_delay)
 MODEBANK_KEY_FIELDS(ArmaxOrder, differences, state_lags, input_lags, noise_lags, intercept)
 MODEBANK_KEY_FIELDS(ArmaxStructure, order, delays)
-MODEBANK_KEY_FIELDS(SingleModel, structure, measurement_variance)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, transitions, seed, terms, em, linear, noise_by_input, single, all)
-MODEBANK_KEY_FIELDS(OneMotionInputs, bank, horizon, lags)
-MODEBANK_KEY_FIELDS(DriftingInputs, horizon, lags)
-MODEBANK_KEY_FIELDS(BankInputs, window, bank, one_model, filter, one_motion, drifting, single, terms_stated)
+MODEBANK_KEY_FIELDS(OtherLags, linear, one_motion, drifting, armax)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, terms, em, lags, noise_by_input, measurement_variance, all)
+MODEBANK_KEY_FIELDS(BankInputs, window, bank, lags, horizon, filter, one_model, one_motion, drifting, terms_stated)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)
 MODEBANK_KEY_FIELDS(CompetitorScoreInputs, window, scoring)
 MODEBANK_KEY_FIELDS(BankScoreInputs, filter, scoring)
@@ -118,7 +114,7 @@ ScoringOptions scoring_inputs(const ChainOptions& options) {
 ChainInputs chain_inputs(const ChainOptions& options) {
   LearningInputs learning = learning_inputs(options);
   const ScoringOptions scoring = scoring_inputs(options);
-  const FitOptions window = learning.windows.window;
+  const FitOptions window = learning.windows;
   return {std::move(learning), {options.data}, {window, scoring}, {options.filter, scoring}};
 }
 

@@ -5,7 +5,6 @@
 
 #include "app/config/chain_options.hpp"
 #include "filter/learn/chain/inputs.hpp"
-#include "filter/learn/chain/stage.hpp"
 
 /// Inputs of the stages other than learning, and the keys of all stages. The stages of learning have their inputs in
 /// filter/learn/chain/inputs.hpp.

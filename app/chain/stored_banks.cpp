@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"
 
@@ -22,22 +22,22 @@ bool trained_on(const Recording& recording, const Trajectory& run) {
 
 /// Warns if the scores of a stored bank can be misread.
 void warn_of_foreign_bank(const std::string& file, const Archive& stored, const Recording& recording,
-                          const Listener& listener) {
+                          const Tell& tell) {
   std::vector<std::string> trained;
   for (const Trajectory& run : recording.runs)
     if (run.role == Role::test && stored.recording && trained_on(*stored.recording, run)) trained.push_back(run.run);
   if (!trained.empty())
-    listener.warning(
-        fmt::format("{}: its bank was trained on {}, so these runs are not held out and their scores are too good",
-                    file, fmt::join(trained, ", ")));
+    tell(Level::warning,
+         fmt::format("{}: its bank was trained on {}, so these runs are not held out and their scores are too good",
+                     file, fmt::join(trained, ", ")));
   const Bank& bank = *stored.bank;
   if (bank.state_names != state_names(recording, bank.structure) ||
       bank.input_names != input_names(recording, bank.structure))
-    listener.warning(fmt::format("{}: its bank was learned from the states {} and inputs {}; the data have {} and {}",
-                                 file, fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
-                                 fmt::join(names_of(recording.states), ", "),
-                                 fmt::join(names_of(recording.inputs), ", ")));
-  if (const std::string remark = period_remark(file, bank, recording); !remark.empty()) listener.warning(remark);
+    tell(Level::warning,
+         fmt::format("{}: its bank was learned from the states {} and inputs {}; the data have {} and {}", file,
+                     fmt::join(bank.state_names, ", "), fmt::join(bank.input_names, ", "),
+                     fmt::join(names_of(recording.states), ", "), fmt::join(names_of(recording.inputs), ", ")));
+  if (const std::string remark = period_remark(file, bank, recording); !remark.empty()) tell(Level::warning, remark);
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ std::string period_remark(const std::string& file, const Bank& bank, const Recor
 }
 
 StoredBanks read_banks(const std::filesystem::path& path, const Recording& recording, bool one_model,
-                       const Listener& listener) {
+                       const Tell& tell) {
   const std::string file = path.string();
   Archive stored = read_archive(path);
   if (!stored.bank) throw DataError(fmt::format("{}: this archive has no bank", file));
@@ -58,7 +58,7 @@ StoredBanks read_banks(const std::filesystem::path& path, const Recording& recor
   if (structure.states != recording.state_count() || structure.inputs != recording.input_count())
     throw DataError(fmt::format("{}: its bank has {} states and {} inputs, the data have {} and {}", file,
                                 structure.states, structure.inputs, recording.state_count(), recording.input_count()));
-  warn_of_foreign_bank(file, stored, recording, listener);
+  warn_of_foreign_bank(file, stored, recording, tell);
   if (one_model && !stored.baseline && stored.bank->mode_count() > 1)
     throw DataError(fmt::format("{}: this archive has no baseline, which filter.variant = kf runs", file));
   if (one_model && stored.baseline)

@@ -28,7 +28,6 @@ std::string period_remark(const std::string& file, const Bank& bank, const Recor
 /// `one_model`: for a single Kalman filter, the bank is the archive's baseline. Warns if the scores can be misread:
 /// test runs that trained the bank, other columns, another sample period. Throws DataError if the bank does not exist
 /// or its channels do not fit the data's channels.
-StoredBanks read_banks(const std::filesystem::path& file, const Recording& recording, bool one_model,
-                       const Listener& listener);
+StoredBanks read_banks(const std::filesystem::path& file, const Recording& recording, bool one_model, const Tell& tell);
 
 }  // namespace modebank

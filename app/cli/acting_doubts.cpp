@@ -13,7 +13,7 @@
 #include "app/cli/log/joined_inputs.hpp"
 #include "app/config/option_text.hpp"
 #include "app/text/structure_text.hpp"
-#include "filter/learn/chain/armax_bank.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "ident/data/stretch.hpp"
 #include "ident/lag/structure_search.hpp"
 #include "io/import/import.hpp"

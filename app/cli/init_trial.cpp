@@ -10,7 +10,7 @@
 #include "app/config/config_file.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
-#include "filter/learn/chain/training_check.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "io/import/import.hpp"
 #include "modebank/base/error.hpp"

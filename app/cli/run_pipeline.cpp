@@ -82,9 +82,10 @@ class Log : public Adviser {
       check_replaces_same_result(output_, archive.provenance.data_hash, bank_, last_);
     Adviser::done(stage, archive);
   }
-  void progress(const std::string& line) const override { spdlog::info("{}", line); }
-  void detail(const std::string& line) const override { spdlog::debug("{}", line); }
-  void warning(const std::string& line) const override { spdlog::warn("{}", line); }
+  void tell(Level level, const std::string& line) const override {
+    constexpr std::array levels{spdlog::level::debug, spdlog::level::info, spdlog::level::warn};
+    spdlog::log(levels[static_cast<std::size_t>(level)], "{}", line);
+  }
 
  private:
   std::string output_, bank_;
@@ -96,15 +97,15 @@ std::string archive_line(const Config& config) { return fmt::format("\narchive  
 nlohmann::json written(const Config& config) { return {{"written", {config.archive.output}}}; }
 
 /// Whether there are so many windows that they are written to the file during the fit.
-bool streams_windows(const Recording& recording, const WindowInputs& inputs) {
+bool streams_windows(const Recording& recording, const FitOptions& window) {
   constexpr Index in_memory = 1000000;  // largest number of windows in memory: about 150 MB for a model with three
                                         // parameters
-  return count_windows(recording, inputs.window) > in_memory;
+  return count_windows(recording, window) > in_memory;
 }
 
 /// Fits windows and writes them to an archive that contains only the data of `before` and the windows. `report` is
 /// called for each block of windows. Returns the properties that all windows share.
-WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const WindowInputs& inputs,
+WindowFits identify_into_file(const std::filesystem::path& path, const Archive& before, const FitOptions& window,
                               const std::function<void(const WindowFits&)>& report) {
   const Recording& recording = *before.recording;
   const auto produce = [&](const WindowSink& sink) {
@@ -112,9 +113,9 @@ WindowFits identify_into_file(const std::filesystem::path& path, const Archive& 
       report(fits);
       sink(fits, first);
     };
-    return in_section("window", [&] { return stream_windows(recording, inputs.window, report_and_sink); });
+    return in_section("window", [&] { return stream_windows(recording, window, report_and_sink); });
   };
-  return write_archive(path, before, count_windows(recording, inputs.window), produce);
+  return write_archive(path, before, count_windows(recording, window), produce);
 }
 
 /// Adds doubts about columns and the single linear model. The screen already has the doubt about the level.
@@ -133,10 +134,11 @@ void add_doubts(const Archive& archive, Result& result) {
 Result identify_many(const Config& config, const Chain& chain, const Archive& data, const Log& log) {
   const Stopwatch watch;
   WindowCounts counts;
-  const WindowInputs& inputs = chain.inputs().windows;
-  const WindowFits common = identify_into_file(final_target(config.archive.output), data, inputs,
+  const FitOptions& window = chain.inputs().windows;
+  const WindowFits common = identify_into_file(final_target(config.archive.output), data, window,
                                                [&](const WindowFits& fits) { counts.add(fits); });
-  log.progress(fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
+  log.tell(Level::progress,
+           fmt::format("windows: {} fitted and archived in {:.2f} s", counts.total(), watch.seconds()));
   log.warn_of_windows(counts);
   const std::vector<std::string> labels =
       parameter_labels(common, names_of(data.recording->states), names_of(data.recording->inputs));

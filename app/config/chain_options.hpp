@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "filter/learn/chain/options.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "io/import/options.hpp"
 
 namespace modebank {

@@ -87,7 +87,6 @@ struct Config {
   ClusterOptions mixture;
   StructureConfig structure;
   std::string terms = "auto";
-  NoiseByInput noise_by_input = NoiseByInput::automatic;
   BankOptions bank;
   std::vector<std::string> mode_names;
   FilterOptions filter;

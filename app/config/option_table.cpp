@@ -38,8 +38,8 @@ AutomaticWindows automatic_windows_of(const Config& c) {
 
 ChainOptions chain_options(const Config& c) {
   LearningOptions learning{
-      window_options_of(c),    c.mixture, c.bank,          c.filter, c.scoring, c.job.seed, searched_lags_of(c),
-      automatic_windows_of(c), c.terms,   c.noise_by_input};
+      window_options_of(c),    c.mixture, c.bank, c.filter, c.scoring, c.job.seed, searched_lags_of(c),
+      automatic_windows_of(c), c.terms};
   learning.bank.screen = learning.bank.theta != ThetaSource::mean;
   learning.bank.em.restarts = refinement_restarts(c.mixture.selection.em.restarts);
   return {learning, data_options_of(c), c.mode_names};

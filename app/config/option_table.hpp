@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "app/config/config.hpp"
-#include "filter/learn/chain/stage.hpp"
+#include "filter/learn/chain/inputs.hpp"
 
 namespace modebank::app {
 

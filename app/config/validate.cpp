@@ -4,8 +4,6 @@
 #include "app/config/faults.hpp"
 #include "app/config/free_run_check.hpp"
 #include "app/config/section.hpp"
-#include "filter/learn/chain/stages.hpp"
-#include "filter/learn/learn.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "modebank/base/error.hpp"
 
@@ -75,10 +73,8 @@ void validate(const Config& config) {
   require(config.bank.refine != Refine::em || is_linear(config.window),
           fmt::format("bank.refine = em needs window.model = linear or varx, not {}: it fits linear modes",
                       config.window.model));
-  require(config.bank.refine != Refine::em || config.bank.noise == NoiseSource::per_mode,
-          fmt::format("bank.noise = {} does not work with bank.refine = em, which learns Q per mode; set bank.refine = "
-                      "none, or bank.noise = per-mode",
-                      name_of(config.bank.noise)));
+  require(config.bank.refine != Refine::em || !config.bank.process_variance,
+          "bank.process_variance does not work with bank.refine = em, which learns Q; give one of them");
   check_logit(config);
 }
 

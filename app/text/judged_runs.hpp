@@ -3,7 +3,6 @@
 #include <optional>
 #include <string>
 
-#include "filter/learn/chain/progress.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank {

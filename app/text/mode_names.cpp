@@ -34,14 +34,14 @@ std::string label_of_mode(const Archive& archive, Index mode) {
 }
 
 std::vector<std::string> mode_names_of(const Archive& archive, const std::vector<std::string>& given,
-                                       const Progress& progress) {
+                                       const Tell& tell) {
   if (!archive.bank) return {};
   const auto modes = static_cast<std::size_t>(archive.bank->mode_count());
   if (!given.empty() && given.size() != modes)
-    progress.warning(
-        fmt::format("bank.mode_names has {} name{}, but the bank has {} mode{}: {}", given.size(),
-                    given.size() == 1 ? "" : "s", modes, modes == 1 ? "" : "s",
-                    given.size() < modes ? "it names only the first modes" : "its last names are not used"));
+    tell(Level::warning,
+         fmt::format("bank.mode_names has {} name{}, but the bank has {} mode{}: {}", given.size(),
+                     given.size() == 1 ? "" : "s", modes, modes == 1 ? "" : "s",
+                     given.size() < modes ? "it names only the first modes" : "its last names are not used"));
   std::vector<std::string> names(modes);
   for (std::size_t k = 0; k < modes; ++k)
     names[k] =

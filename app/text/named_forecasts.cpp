@@ -115,7 +115,7 @@ std::string c_lacks(const Bank& bank) {
   if (!bank.running_noise.empty()) return "coefficients that learn in every run";
   if (!bank.terms.empty()) return "a motion that bends (window.terms)";
   if (!bank.noise_factor.empty())
-    return "process noise that follows state and input (--bank.noise_by_input none learns a bank without it)";
+    return "process noise that follows state and input (a bank with a given bank.measurement_variance has none)";
   return bank.is_quantised() ? "measurements in steps (data.quantum)" : "";
 }
 

@@ -15,7 +15,7 @@
 #include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
-#include "filter/learn/chain/parts.hpp"
+#include "filter/learn/chain/chain.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/run_labels.hpp"
 #include "ident/data/trajectory.hpp"

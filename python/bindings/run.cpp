@@ -16,13 +16,12 @@ namespace {
 /// Passes progress and warnings to Python. Ctrl-C can end the run at each of these calls.
 class Callbacks : public app::Adviser {
  public:
-  Callbacks(py::object progress, py::object warning) : progress_(std::move(progress)), warning_(std::move(warning)) {}
+  Callbacks(py::object progress, py::object warning) : told_{py::none(), std::move(progress), std::move(warning)} {}
 
-  void progress(const std::string& line) const override { call(progress_, line); }
-  void warning(const std::string& line) const override { call(warning_, line); }
+  void tell(Level level, const std::string& line) const override { call(told_[static_cast<std::size_t>(level)], line); }
   void done(Stage stage, const Archive& archive) const override {
     Adviser::done(stage, archive);
-    call(py::none(), "");
+    call(told_[0], "");
   }
 
  private:
@@ -32,7 +31,7 @@ class Callbacks : public app::Adviser {
     if (!function.is_none()) function(line);
   }
 
-  py::object progress_, warning_;
+  std::array<py::object, 3> told_;  ///< by Level
 };
 
 /// Returns the path of the archive.

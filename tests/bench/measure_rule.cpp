@@ -20,8 +20,8 @@
 #include <string_view>
 #include <vector>
 
-#include "filter/learn/competitors/noise_by_input.hpp"
-#include "filter/learn/learn.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

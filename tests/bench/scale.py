@@ -36,8 +36,6 @@ length = {length}
 [mixture]
 components = 1..2
 restarts = 2
-[bank]
-noise_by_input = none
 """
 
 

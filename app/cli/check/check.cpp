@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "filter/learn/chain/training_check.hpp"
+#include "filter/learn/chain/inputs.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/lag/choice.hpp"
 #include "io/import/import.hpp"

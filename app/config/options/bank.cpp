@@ -43,16 +43,6 @@ std::vector<Option> bank_options() {
            "(data.label) of at least 60 % of its held-out samples",
            MODEBANK_FIELD(mode_names))
           .touch("when you know what the modes are and show the results to others", bank),
-      words("bank.noise", "process noise covariance Q: one per mode, one for all modes, or bank.process_variance",
-            MODEBANK_FIELD(bank.noise))
-          .touch("shared or fixed, to measure what separate noise per mode is worth; such a bank is not refined",
-                 competitors),
-      words("bank.noise_by_input",
-            "a factor of 0.2 to 5 on all process noise, as a function of state and input. auto uses it where training "
-            "runs left out gain. It is not tried with rounded samples, a given R, bank.transition = "
-            "logit, bank.look_ahead above 1, or without em",
-            MODEBANK_FIELD(noise_by_input))
-          .touch("none, for a bank that is exported to C, or when you want an estimate of R", competitors),
       words("bank.transition",
             "source of the mode transition matrix: counted from the windows' labels, or made from bank.stay. logit: in "
             "a refined bank the probabilities are a function of state and input where training runs left out gain",
@@ -63,16 +53,17 @@ std::vector<Option> bank_options() {
               MODEBANK_FIELD(bank.stay))
           .touch("with bank.transition = stay: 0.98 for modes that last 50 samples (1 - 1/N for N samples)", bank),
       numeric("bank.process_variance", above(0), "state unit^2",
-              "process noise variance of every state, for bank.noise = fixed", MODEBANK_FIELD(bank.process_variance))
-          .touch("with bank.noise = fixed: the Q that you would tune by hand", bank),
+              "process noise variance Q of every state; empty: each mode learns its own",
+              MODEBANK_FIELD(bank.process_variance))
+          .touch("the Q that you would tune by hand, to compare; such a bank is not refined", competitors),
       numeric("bank.measurement_variance", above(0), "state unit^2",
               "measurement noise variance R; empty: the one that the baseline learns",
               MODEBANK_FIELD(bank.measurement_variance))
           .touch("when a warning says that R cannot be estimated: the square of your sensor's noise", competitors),
       words("bank.refine",
             "learning after the mixture. em: expectation-maximisation of the switching model. none: the mixture's "
-            "modes stay. auto: em, but none for a motion model, bank.theta = mean, bank.noise = shared or fixed, and "
-            "bank.transition = stay",
+            "modes stay. auto: em, but none for a motion model, bank.theta = mean, bank.transition = stay and a "
+            "given bank.process_variance",
             MODEBANK_FIELD(bank.refine))
           .touch("none, for a first look at the data in seconds, or to keep the mixture's own modes", competitors,
                  basic),

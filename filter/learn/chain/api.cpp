@@ -62,7 +62,6 @@ LearningOptions learning_of(const LearnOptions& options, bool linear) {
   const bool searched = options.search_lags && linear;
   learning.searched_lags = {searched, searched, searched};
   learning.automatic_windows = {options.automatic_length, options.automatic_step};
-  learning.noise_by_input = options.noise_by_input ? NoiseByInput::automatic : NoiseByInput::none;
   learning.competitors = false;  // this API does not return competitors
   return learning;
 }
@@ -80,8 +79,9 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
   };
   std::vector<const Eigen::VectorXd*> times;
   for (const Trajectory& run : recording.runs) times.push_back(&run.time_s);
-  const LearningOptions learning = learning_of(options, !own && is_linear(options.window));
-  learn_all(recording, learning, Stage::bank, step_scatter(times) > most_step_scatter, hooks, Progress(), learned);
+  LearningOptions learning = learning_of(options, !own && is_linear(options.window));
+  learning.one_model = step_scatter(times) > most_step_scatter;
+  learn_all(recording, learning, Stage::bank, hooks, learned);
   origin.features = learned.mixture->feature_names;
   origin.mixture = from_internal(learned.mixture->mixture);
   origin.candidates = learned.mixture->candidates;

@@ -1,10 +1,11 @@
-#include "filter/learn/chain/armax_bank.hpp"
-
+// The linear stage's model as a bank of one mode.
 #include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <optional>
 #include <vector>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/chain/stages.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "ident/base/covariance.hpp"
 #include "ident/base/seed.hpp"
 
@@ -72,20 +73,18 @@ Eigen::VectorXd errors_of_R(const ArmaxFit& fit, const std::optional<Eigen::Vect
 
 }  // namespace
 
-ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, Index inputs, bool intercept) {
-  return {{row.differences, row.state_lags, row.input_lags, row.noise_lags, intercept},
-          found.delays_of(row).by_input(inputs)};
-}
-
-Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R) {
-  ArmaxNoise noise = noises(fit, stated_R);
-  // A level that wanders is noise of the equation with a pole at 1, beside that of the plant.
-  if (fit.order.differences) noise.Q = noises(in_levels(fit), noise.R).Q;
-  const Parameters own = parameters_of(fit), levels = parameters_of(in_levels(fit));
+Bank bank_of(const Recording& recording, const ArmaxFit& fit, std::optional<double> variance) {
+  std::optional<Eigen::VectorXd> stated_R;
+  if (variance) stated_R.emplace(Eigen::VectorXd::Constant(recording.state_count(), *variance));
+  const Eigen::VectorXd R = noises(fit, stated_R).R;
+  // Q of the model's own equation: a level that wanders is noise of the equation with a pole at 1, beside the plant's.
+  const ArmaxFit equation = in_levels(fit);
+  const Eigen::VectorXd Q = noises(equation, R).Q;
+  const Parameters own = parameters_of(fit), levels = parameters_of(equation);
   const Index p = levels.structure.parameters();
-  Bank bank = bank_frame(recording, levels.structure, noise.R.asDiagonal());
+  Bank bank = bank_frame(recording, levels.structure, R.asDiagonal());
   bank.model = levels.structure.lagged() ? "varx" : "linear";
-  bank.modes.push_back(make_mode(levels.structure, levels.theta, noise.Q.asDiagonal(), Eigen::MatrixXd::Zero(p, p),
+  bank.modes.push_back(make_mode(levels.structure, levels.theta, Q.asDiagonal(), Eigen::MatrixXd::Zero(p, p),
                                  levels.covariance.diagonal().cwiseMax(0.0).cwiseSqrt(), 1.0));
   if (!fit.delays.empty())
     bank.modes[0].response = step_response(own.structure, own.theta, own.covariance, fit.delays, bank.dt_s);
@@ -95,10 +94,10 @@ Bank bank_of(const Recording& recording, const ArmaxFit& fit, const std::optiona
 }
 
 std::optional<Bank> learn_armax(const Recording& recording, const ArmaxStructure& structure,
-                                const std::optional<Eigen::VectorXd>& stated_R) {
+                                std::optional<double> variance) {
   const LinearStage stage = find_linear_stage(recording, {.only = structure});
   if (stage.candidates.empty()) return {};
-  return bank_of(recording, stage.fit(), stated_R);
+  return bank_of(recording, stage.fit(), variance);
 }
 
 }  // namespace modebank

@@ -3,126 +3,18 @@
 #include <fmt/format.h>
 
 #include <memory>
+#include <utility>
 
 #include "filter/judge/finding.hpp"
-#include "filter/learn/chain/training_check.hpp"
-#include "filter/learn/from_mixture/cluster_windows.hpp"
+#include "filter/learn/chain/stages.hpp"
+#include "filter/learn/refine/learning_part.hpp"
+#include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/window_length.hpp"
 #include "modebank/base/eigen.hpp"
 
 namespace modebank {
 namespace {
-
-/// Executes the stages for one call of the chain.
-class Run {
- public:
-  Run(const Recording& recording, const LearningHooks& hooks, const Progress& progress, Learning& learned)
-      : recording_(recording), hooks_(hooks), progress_(progress), learned_(learned) {}
-
-  void find_lags(const LearningInputs& inputs) {
-    if (!inputs.structure) return learned_.structure.reset();
-    provide(Stage::structure, inputs,
-            [&] { learned_.structure = search_structure(recording_, *inputs.structure, progress_); });
-  }
-
-  void identify(const LearningInputs& inputs) {
-    provide(Stage::windows, inputs, [&] {
-      const FitOptions& window = inputs.windows.window;
-      if (const std::string unidentifiable = unidentifiable_effects(recording_, window); !unidentifiable.empty())
-        progress_.warning(unidentifiable);
-      const Stopwatch watch;
-      learned_.windows =
-          hooks_.motion ? fit_windows(recording_, window, *hooks_.motion) : fit_windows(recording_, window);
-      progress_.progress(fmt::format("windows: {} fitted in {:.2f} s", learned_.windows->count(), watch.seconds()));
-    });
-  }
-
-  void learn_baseline(const LearningInputs& inputs) {
-    const CompetitorInputs& of = inputs.competitors;
-    const OneModel linear = one_model(recording_, *learned_.windows, motion_of(inputs.windows.window), of.linear);
-    learned_.baseline = learn_single_filter(recording_, linear, of, progress_);
-  }
-
-  void cluster(const LearningInputs& inputs) {
-    provide(Stage::mixture, inputs, [&] {
-      const MixtureInputs& of = inputs.mixture;
-      const Stopwatch watch;
-      learned_.mixture = cluster_windows(recording_, *learned_.windows, of.window, of.mixture, of.seed);
-      const MixtureResult& found = *learned_.mixture;
-      const std::string part =
-          found.compared > 0 ? ", candidates compared on " + of_all(found.compared, found.clustered) + "," : "";
-      progress_.progress(fmt::format("mixture: {} components from {} windows{} in {:.2f} s", found.mixture.components(),
-                                     found.clustered, part, watch.seconds()));
-    });
-  }
-
-  void learn_competitors(const LearningInputs& inputs) {
-    learned_.terms_asked = inputs.competitors.terms != "none";
-    provide(Stage::competitors, inputs, [&] {
-      static_cast<CompetitorsPart&>(learned_) = modebank::learn_competitors(
-          recording_, *learned_.windows, motion_of(inputs.windows.window), inputs.competitors, progress_);
-    });
-  }
-
-  void learn_bank(const LearningInputs& inputs, bool one_model) {
-    provide(Stage::bank, inputs, [&] { static_cast<BankPart&>(learned_) = bank_of(inputs.bank, one_model); });
-  }
-
- private:
-  const Recording& recording_;
-  const LearningHooks& hooks_;
-  const Progress& progress_;
-  Learning& learned_;
-  std::shared_ptr<const MotionModel> named_ = {};  ///< motion model of window.model
-
-  const MotionModel* motion_of(const FitOptions& window) {
-    if (!hooks_.motion && !named_) named_ = motion_model(window, recording_.state_count(), recording_.input_count());
-    return hooks_.motion ? hooks_.motion : named_.get();
-  }
-
-  void provide(Stage stage, const LearningInputs& inputs, const std::function<void()>& compute) {
-    if (hooks_.provide)
-      hooks_.provide(stage, inputs, compute);
-    else
-      compute();
-  }
-
-  BankPart bank_of(BankInputs asked, bool one_model) {
-    const Stopwatch watch;
-    if (one_model) {
-      asked.one_model = true;
-      progress_.progress("bank: equals baseline, because the time steps differ too much");
-    }
-    if (learned_.noise_only && !learned_.noise_only->noise_factor.empty()) {
-      asked.bank.em.noise_by_input = true;
-      if (asked.one_motion) asked.one_motion->bank.em.noise_by_input = true;
-    }
-    const LearnedFrom from{recording_, *learned_.windows, *learned_.mixture, *learned_.baseline,
-                           motion_of(asked.window)};
-    Refinement refined = learn_modes(from, asked, progress_);
-    if (hooks_.refined) hooks_.refined(refined);
-    BankPart part;
-    if (asked.bank.refine == Refine::em && !asked.one_model) part.unrefined = std::move(refined.start);
-    part.measured_fit = refined.measurement.end;
-    part.learned_transitions = refined.learned_transitions;
-    part.bank = std::move(refined.bank);
-    progress_.progress(fmt::format("bank: {} modes, {} removed as unusable, in {:.2f} s", part.bank->mode_count(),
-                                   part.bank->screened.size(), watch.seconds()));
-    Refinement one_motion;
-    if (asked.one_motion) {
-      one_motion = learn_one_motion(from, *part.bank, asked, progress_);
-      part.one_motion = std::move(one_motion.bank);
-    }
-    if (asked.drifting) part.drifting = learn_drifting(from, part.one_motion, asked, progress_);
-    if (!asked.one_motion) return part;
-    learned_.drifting = part.drifting;
-    part.left_out = score_left_out(
-        recording_, learned_, asked,
-        {{"bank", std::move(refined.of_splits)}, {"one_motion", std::move(one_motion.of_splits)}}, progress_);
-    return part;
-  }
-};
 
 /// Means of the training runs: of each state, then of each input. Missing values do not count.
 std::vector<double> training_means(const Recording& recording) {
@@ -164,25 +56,74 @@ LearningOptions found_in(const Recording& recording, LearningOptions options,
   return options;
 }
 
+/// The decisions of the last stage of learn_all, in their order.
+void learn_banks(const StageData& data, BankInputs inputs, const LearningHooks& hooks, Learning& learned) {
+  static_cast<BankPart&>(learned) = {};
+  if (learned.noise_only && !learned.noise_only->noise_factor.empty()) inputs.bank.em.noise_by_input = true;
+  const Stopwatch watch;
+  // Modes, their number, R, transitions: log score of left-out runs by the bank's own filter.
+  Refinement refined = learn_modes(data, learned, inputs);
+  hooks.refined(refined);
+  if (inputs.bank.refine == Refine::em && !inputs.one_model) learned.unrefined = std::move(refined.start);
+  learned.measured_fit = refined.measurement.end;
+  learned.learned_transitions = refined.learned_transitions;
+  learned.bank = std::move(refined.bank);
+  hooks.tell(Level::progress, fmt::format("bank: {} modes, {} removed as unusable, in {:.2f} s",
+                                          learned.bank->mode_count(), learned.bank->screened.size(), watch.seconds()));
+  // One motion with switching noise: like the bank, and also from the bank's noises.
+  Refinement one_motion;
+  if (inputs.one_motion) {
+    one_motion = learn_one_motion(data, learned, inputs);
+    learned.one_motion = std::move(one_motion.bank);
+  }
+  // What drifts, how fast, with which noise levels: causal log score of the training runs, one step ahead.
+  if (inputs.drifting) learned.drifting = learn_drifting(data, learned, inputs);
+  // The first weights of the combination: scores of left-out runs at the asked horizons.
+  if (inputs.one_motion)
+    learned.left_out = score_left_out(data, learned, inputs, refined.of_splits, one_motion.of_splits);
+}
+
 }  // namespace
 
-void learn_all(const Recording& recording, const LearningOptions& asked, Stage last, bool one_model,
-               const LearningHooks& hooks, const Progress& progress, Learning& learned) {
+void learn_all(const Recording& recording, const LearningOptions& asked, Stage last, const LearningHooks& hooks,
+               Learning& learned) {
   if (last < Stage::structure) return;
   refuse_constant_states(recording);
+  LearningInputs inputs;
+  const auto cached = [&](Stage stage, const std::function<void()>& decide) { hooks.provide(stage, inputs, decide); };
+
+  // Constant: likelihood of least squares. Linear stage with R, structures of bank and one motion: log score of
+  // left-out runs, one step ahead. Structure of drifting: causal log score of the training runs.
   const LearningOptions options = with_intercept(recording, asked);
-  Run run(recording, hooks, progress, learned);
-  LearningInputs inputs = learning_inputs(options);
-  if (inputs.structure && one_model) inputs.structure->with_modes = false;
-  run.find_lags(inputs);
+  inputs = learning_inputs(options);
+  if (inputs.structure)
+    cached(Stage::structure, [&] { learned.structure = search_structure(recording, *inputs.structure, hooks.tell); });
+  else
+    learned.structure.reset();
   if (last < Stage::windows) return;
+
+  // Windows, whose length and step follow from the structure: robust least squares.
   inputs = learning_inputs(found_in(recording, options, learned.structure));
-  run.identify(inputs);
-  if (last < Stage::bank && learned.structure) run.learn_baseline(inputs);
-  if (last >= Stage::mixture) run.cluster(inputs);
+  const auto named =
+      hooks.motion ? nullptr : motion_model(inputs.windows, recording.state_count(), recording.input_count());
+  const std::optional<Recording> part = learning_part(recording, inputs.competitors.em.transitions, asked.seed);
+  const StageData data{recording, part ? *part : recording, hooks.motion ? hooks.motion : named.get(), hooks.tell};
+  cached(Stage::windows, [&] { learned.windows = identify_windows(data, inputs.windows, hooks.motion); });
+  if (last < Stage::bank && learned.structure)
+    learned.baseline = learn_single_filter(data, *learned.windows, inputs.competitors);
+  if (last < Stage::mixture) return;
+
+  // Number of components of the windows: BIC.
+  cached(Stage::mixture, [&] { learned.mixture = cluster(data, *learned.windows, inputs.mixture); });
   if (last < Stage::bank) return;
-  run.learn_competitors(inputs);
-  run.learn_bank(inputs, one_model);
+
+  // Noise of baseline and noise_only: likelihood. Factor on all noise: log score of left-out runs. Terms of nonlinear:
+  // log score of left-out rows.
+  learned.terms_asked = inputs.competitors.terms != "none";
+  cached(Stage::competitors, [&] {
+    static_cast<CompetitorsPart&>(learned) = learn_competitors(data, *learned.windows, inputs.competitors);
+  });
+  cached(Stage::bank, [&] { learn_banks(data, inputs.bank, hooks, learned); });
 }
 
 std::optional<Bank> Learning::bank_of(const std::string& filter) const {

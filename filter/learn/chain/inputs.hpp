@@ -1,73 +1,78 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "filter/learn/chain/options.hpp"
+#include "filter/judge/free_run.hpp"
+#include "ident/data/trajectory.hpp"
+#include "ident/fit/options.hpp"
+#include "ident/lag/armax.hpp"
+#include "ident/lag/structure.hpp"
+#include "modebank/base/names.hpp"
+#include "modebank/learn/options.hpp"
+#include "modebank/mixture/options.hpp"
 
-/// The inputs of each stage of learning. The key of a stored stage is made from its struct, field by field. So a stage
-/// cannot depend on anything outside its key.
+/// The options of learning, and the inputs of each stage. The key of a stored stage is made from its struct of inputs,
+/// field by field. So a stage cannot depend on anything outside its key.
 namespace modebank {
 
-struct WindowInputs {
-  FitOptions window;  ///< window options with the chain's seed
+/// The stages from data to scores, in order. Learning comprises structure to bank.
+enum class Stage { data, structure, windows, mixture, competitors, bank, competitor_scores, bank_scores };
+inline constexpr std::size_t stage_count = 8;
+
+template <>
+struct EnumNames<Stage> {
+  static constexpr Names<stage_count> values{"data",        "structure", "windows",           "mixture",
+                                             "competitors", "bank",      "competitor_scores", "bank_scores"};
 };
 
-struct MixtureInputs {
-  FitOptions window;  ///< needed to fit the same windows with one lag
-  ClusterOptions mixture;
+constexpr std::size_t index_of(Stage stage) { return static_cast<std::size_t>(stage); }
+
+/// Options for evaluating a filter. Options of the filter's steps are in FilterOptions.
+struct ScoringOptions {
+  static inline const std::vector<Eigen::Index> default_horizon{1, 10};
+  std::vector<Eigen::Index> horizon = default_horizon;  ///< horizons in samples; the summary already has horizon 1
+  FreeRunOptions free_run = {};                         ///< options of free runs, with the seed of the whole chain
+  std::uint64_t seed = 1;  ///< seed for the transforms of quantised measurements; the seed of the whole chain
+};
+
+/// Which options of windows are derived from the data (ident/fit/window_length.hpp).
+struct AutomaticWindows {
+  bool length = false, step = false, intercept = false;
+
+  bool any() const { return length || step || intercept; }
+};
+
+/// Lags and delays of the stages. A stage without an entry has those of the windows.
+struct OtherLags {
+  std::optional<StageLags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
+  std::optional<StageLags> one_motion = {};  ///< for one motion with switching noise
+  std::optional<StageLags> drifting = {};
+  std::optional<ArmaxStructure> armax = {};  ///< of the linear stage: for `baseline`, in place of `linear`
+};
+
+/// All options of learning from runs. `seed` is the only seed: it replaces those in `window` and `bank`.
+struct LearningOptions {
+  FitOptions window = {};
+  ClusterOptions mixture = {};
+  BankOptions bank = {};
+  FilterOptions filter = {};
+  ScoringOptions scoring = {};
   std::uint64_t seed = 1;
-};
-
-/// The linear stage's structure, and R where the configuration states it.
-struct SingleModel {
-  ArmaxStructure structure;
-  std::optional<double> measurement_variance;
-};
-
-/// Inputs of the bank's competitors. Except for `one_motion`, competitors depend on the windows alone. `one_motion` has
-/// at most as many noise levels as the mixture has components.
-struct CompetitorInputs {
-  FitOptions window;
-  Index transitions = 0;                 ///< largest number of transitions to learn from, as for the bank; 0 takes all
-  std::uint64_t seed = 1;                ///< seed that selects these transitions
-  std::string terms = "auto";            ///< terms of `nonlinear`
-  RefineOptions em = {};                 ///< how `nonlinear` is learned
-  std::optional<StageLags> linear = {};  ///< lags of `baseline`, `noise_only` and `nonlinear`; if empty, the lags of
-                                         ///< the windows
-
-  /// Needed for the bank, and for all competitors except `baseline`.
-  NoiseByInput noise_by_input = NoiseByInput::none;
-  std::optional<SingleModel> single = {};  ///< the linear stage's model; empty if `baseline` is least squares
-  bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
-};
-
-/// Inputs of the competitor `one_motion`, which is learned like the bank.
-struct OneMotionInputs {
-  BankOptions bank;
-  std::vector<Index> horizon = {};     ///< horizons at which left-out training runs are predicted, in addition to one
-                                       ///< sample ahead
-  std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used
-};
-
-/// Inputs of the competitor `drifting`. It has the noise levels of `one_motion`, if that exists.
-struct DriftingInputs {
-  std::vector<Index> horizon = {};     ///< horizons at which it widens its predictions
-  std::optional<StageLags> lags = {};  ///< if empty, the lags of the windows are used
-};
-
-struct BankInputs {
-  FitOptions window;
-  BankOptions bank;        ///< bank options with the chain's seed
-  bool one_model = false;  ///< whether the bank is the baseline, because a single Kalman filter was requested
-  std::optional<FilterOptions> filter;             ///< set if learning uses the filter, that is for refinement
-  std::optional<OneMotionInputs> one_motion = {};  ///< empty for a single Kalman filter
-  std::optional<DriftingInputs> drifting = {};     ///< empty if the bank has no competitors but the baseline
-  std::optional<SingleModel> single = {};          ///< as in CompetitorInputs
-  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
-                              ///< left out
+  SearchedLags searched_lags = {};          ///< which lags are chosen on runs that were left out; these replace the
+                                            ///< lags in `window`
+  AutomaticWindows automatic_windows = {};  ///< which values are derived from the data; these replace the values in
+                                            ///< `window`
+  std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for
+                                            ///< read_terms
+  OtherLags other_lags = {};
+  bool competitors = true;  ///< if false, only the baseline is learned, and the bank is made from it
+  bool one_model = false;   ///< whether the bank is the baseline. This is set if the time steps differ much. Such steps
+                            ///< would make one motion look like several modes. Only least squares then preserves the
+                            ///< motion's time constant
 };
 
 /// The inputs of the search for a structure.
@@ -77,19 +82,69 @@ struct StructureInputs {
   bool with_modes = true;  ///< whether modes, and one motion with switching noise, have a structure of their own
 };
 
+struct MixtureInputs {
+  FitOptions window;  ///< needed to fit the same windows with one lag
+  ClusterOptions mixture;
+  std::uint64_t seed = 1;
+};
+
+/// Inputs of the competitors that depend on the windows alone.
+struct CompetitorInputs {
+  FitOptions window;
+  std::string terms = "auto";  ///< terms of `nonlinear`
+  RefineOptions em = {};       ///< how `nonlinear` is learned; its part of the runs is that of all competitors
+  OtherLags lags = {};         ///< without `linear`, `baseline`, `noise_only` and `nonlinear` have those of the windows
+
+  bool noise_by_input = false;                      ///< whether a factor on all noise may depend on state and input
+  std::optional<double> measurement_variance = {};  ///< stated R of the linear stage's model
+  bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
+};
+
+/// Inputs of the bank, and of the competitors `one_motion` and `drifting`, which are learned after it.
+struct BankInputs {
+  FitOptions window;
+  BankOptions bank;                 ///< bank options with the chain's seed; also those of `one_motion`
+  OtherLags lags = {};              ///< of `one_motion`, `drifting` and the linear stage
+  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
+                                    ///< sample ahead; `drifting` widens its predictions at these horizons
+  std::optional<FilterOptions> filter = {};  ///< set if learning uses the filter, that is for refinement
+  bool one_model = false;                    ///< whether the bank is the baseline
+  bool one_motion = true;                    ///< false for a single Kalman filter
+  bool drifting = true;                      ///< false if the bank has no competitors but the baseline
+  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
+                              ///< left out
+};
+
 /// The inputs of all stages of learning.
 struct LearningInputs {
   std::optional<StructureInputs> structure;  ///< empty if no lags are searched
-  WindowInputs windows;
+  FitOptions windows;                        ///< window options with the chain's seed
   MixtureInputs mixture;
   CompetitorInputs competitors;
   BankInputs bank;
 };
 
+/// Splits the options into the inputs of each stage.
+LearningInputs learning_inputs(const LearningOptions& options);
+
+/// The options with the found structure, marked as the result of a search.
+LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found, Index inputs);
+
+/// The structure of a row of the table, with the delays that were found for the inputs.
+ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, Index inputs, bool intercept);
+
 /// Filter options of a competitor: its own kind of filter.
 FilterOptions competitor_filter(const std::string& name);
 
-/// Splits the options into the inputs of each stage.
-LearningInputs learning_inputs(const LearningOptions& options);
+/// Throws DataError for a state that is constant in all training runs. Such a state contains no motion, and any filter
+/// predicts it without error.
+void refuse_constant_states(const Recording& recording);
+
+/// Throws DataError for a given horizon (samples ahead) that is longer than the longest judged run. No sample could be
+/// scored at this horizon. Judged runs are the held-out runs; without held-out runs, they are the training runs.
+void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
+
+/// A message about regressors of the linear model that the training runs do not determine; empty if there is none.
+std::string unidentifiable_effects(const Recording& recording, const LinearStructure& structure);
 
 }  // namespace modebank

@@ -4,10 +4,10 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"

@@ -1,21 +1,33 @@
-#include "filter/learn/competitors/drifting.hpp"
-
+// The competitor `drifting`: its settings, what drifts, and its noise levels.
 #include <tbb/parallel_for.h>
 
 #include <Eigen/Core>
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
 #include <vector>
 
 #include "filter/judge/forecast.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/refine/learning_part.hpp"
 #include "filter/step/noise_density.hpp"
+#include "ident/data/stretch.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/model/transitions.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
+namespace {
 
+/// Root mean square of every regressor over the training transitions, with equal weights; 1 if a regressor is always
+/// zero.
 Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
   const Transitions transitions = stack_training(recording, structure);
   require_transitions(transitions.count() > 0);
@@ -23,8 +35,6 @@ Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructur
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();
   return scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });
 }
-
-namespace {
 
 constexpr Index factors_below = 16, factors_above = 32;  // index of the grid 2^(i / 4) of a horizon's factor
 
@@ -63,18 +73,8 @@ void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) 
   bank.drift.tuning = {scores.log_score(best), scores.samples};
 }
 
-/// Per training run and horizon.
+/// Errors of predictions per training run and horizon.
 using TrainingErrors = std::vector<std::vector<LevelErrors>>;
-
-TrainingErrors training_errors(const Bank& bank, const Recording& recording, const std::vector<Index>& horizons) {
-  std::vector<const Trajectory*> runs;
-  for (const Trajectory& run : recording.runs)
-    if (run.role == Role::train) runs.push_back(&run);
-  TrainingErrors errors(runs.size());
-  tbb::parallel_for(std::size_t{0}, runs.size(),
-                    [&](std::size_t i) { errors[i] = level_errors(bank, *runs[i], horizons); });
-  return errors;
-}
 
 /// The grid position of the factor that makes the errors most likely. If several are equally likely, the nearest to
 /// factor 1.
@@ -100,20 +100,24 @@ Index best_factor(const StudentNoise& noise, const TrainingErrors& runs, std::si
   return best;
 }
 
-}  // namespace
-
+/// Chooses the variance's factor of each horizon from 2 on, as learn_drifting.
 void choose_horizon_factors(Bank& bank, const Recording& recording, std::vector<Index> horizons) {
   bank.running_noise.horizon_factor.clear();
   std::erase(horizons, Index{1});
   std::sort(horizons.begin(), horizons.end());
   horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
   if (horizons.empty()) return;
-  const TrainingErrors runs = training_errors(bank, recording, horizons);
+  const std::vector<Trajectory> runs = training_part(recording).runs;
+  TrainingErrors errors(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { errors[i] = level_errors(bank, runs[i], horizons); });
   const StudentNoise noise(bank.running_noise.nu);
   for (std::size_t h = 0; h < horizons.size(); ++h)
-    bank.running_noise.horizon_factor.emplace_back(horizons[h],
-                                                   std::exp2(0.25 * static_cast<double>(best_factor(noise, runs, h))));
+    bank.running_noise.horizon_factor.emplace_back(
+        horizons[h], std::exp2(0.25 * static_cast<double>(best_factor(noise, errors, h))));
 }
+
+}  // namespace
 
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
                     const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {
@@ -134,6 +138,185 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
   bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;
+  return bank;
+}
+
+namespace {
+
+constexpr Index most_asked_transitions = 20000;
+constexpr double least_wandering_gain = 0.02;  // [nats/sample]
+
+struct Wanderer {
+  LinearStructure structure;
+  Wandering wandering;
+};
+
+/// The candidates. The first one is kept if no other candidate gains.
+std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
+  const LinearStructure one_lag = structure.with_one_lag();
+  std::vector<Wanderer> candidates{{structure, Wandering::all}};
+  if (one_lag != structure) candidates.push_back({one_lag, Wandering::all});
+  for (const Wanderer& with : std::vector<Wanderer>(candidates)) {
+    LinearStructure constant = with.structure;
+    constant.intercept = true;
+    candidates.push_back({constant, Wandering::constant});
+    if (with.structure.inputs > 0) candidates.push_back({with.structure, Wandering::gain});
+  }
+  return candidates;
+}
+
+}  // namespace
+
+DriftingGrid coarse_drifting_grid() {
+  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
+}
+
+double drifting_training_score(const Recording& recording, Index latest, const LinearStructure& structure,
+                               const DriftingGrid& grid, Wandering wandering) {
+  const Recording part = from_common_start(recording, latest - structure.first_transition());
+  try {
+    return learn_drifting(part, fit_global(part, structure), structure, {1}, grid, wandering).drift.tuning.log_score;
+  } catch (const DataError&) {
+    return -std::numeric_limits<double>::infinity();
+  }
+}
+
+Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
+                              const std::vector<Index>& horizons) {
+  const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
+  const std::vector<Wanderer> candidates = candidates_of(structure);
+  const Wanderer* chosen = &candidates.front();
+  DriftingGrid grid = coarse_drifting_grid();
+  grid.p0.push_back(10.0);  // each run learns its own coefficients, so differences between runs do not change this
+                            // comparison
+  double best = -std::numeric_limits<double>::infinity();
+  for (const Wanderer& candidate : candidates) {
+    const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),
+                                                 candidate.structure, grid, candidate.wandering);
+    if (!(score > best)) continue;
+    best = &candidate == &candidates.front() ? score + least_wandering_gain : score;
+    chosen = &candidate;
+  }
+  if (chosen == &candidates.front()) return learn_drifting(recording, global, structure, horizons);
+  return learn_drifting(recording, fit_global(recording, chosen->structure), chosen->structure, horizons, {},
+                        chosen->wandering);
+}
+
+namespace {
+
+/// Position of a setting on its grid, in the order q, p0, leak, lam, nu, floor, start. `start` is the running variance
+/// at a start, as a share of v0.
+using Point = std::array<std::size_t, 7>;
+
+std::array<std::vector<double>, 7> grids() {
+  const DriftingGrid grid;
+  return {grid.q, {1e-2, 1e-1, 1.0, 10.0, 100.0}, grid.leak, grid.lam, grid.nu, grid.floor, {0.1, 0.3, 1.0}};
+}
+
+/// The training score, one sample ahead. `samples`: those that a filter of this structure scores.
+GridTuning scored(const Bank& bank, const Recording& training, Index samples) {
+  return {training_log_likelihood(bank, training, {}) / static_cast<double>(samples), samples};
+}
+
+Index scored_samples(const Bank& bank, const Recording& training) {
+  Index samples = 0;
+  for (const Trajectory& run : training.runs)
+    if (run.role == Role::train) samples += (!log_densities(bank, run, {}).array().isNaN()).count();
+  return samples;
+}
+
+/// Climbs along one setting after another to the highest training score.
+class Climb {
+ public:
+  /// `frame`: a model with levels whose settings are ignored.
+  Climb(const Bank& frame, const Recording& training, Index samples)
+      : frame_(frame), training_(training), samples_(samples), grids_(grids()) {}
+
+  void from(Point at) {
+    constexpr double least_climb = 1e-5;  // [nats/sample]
+    for (bool moved = true; moved;) {
+      moved = false;
+      for (std::size_t setting = 0; setting < at.size(); ++setting) {
+        Point trial = at;
+        for (trial[setting] = 0; trial[setting] < grids_[setting].size(); ++trial[setting])
+          if (score(trial) > score(at) + least_climb) {
+            at = trial;
+            moved = true;
+          }
+      }
+    }
+    if (!best_ || score(at) > score(*best_)) best_ = at;
+  }
+
+  /// The best model of all climbs. P, q, the levels and the floor are in units of v, so a share of v0 at the start is
+  /// the same as levels of this share.
+  Bank best() const { return at(*best_); }
+
+ private:
+  const Bank& frame_;
+  const Recording& training_;
+  Index samples_;
+  std::array<std::vector<double>, 7> grids_;
+  std::map<Point, double> known_;
+  std::optional<Point> best_;
+
+  Bank at(const Point& point) const {
+    const auto value = [&](std::size_t setting) { return grids_[setting][point[setting]]; };
+    const double share = value(6);
+    Bank bank = frame_;
+    bank.drift.rates = {share * value(0), share * value(1), value(2)};
+    bank.running_noise.lam = value(3);
+    bank.running_noise.nu = value(4);
+    bank.running_noise.floor = value(5) / share * bank.noise_variance();
+    bank.running_noise.level *= share;
+    return bank;
+  }
+
+  double score(const Point& point) {
+    const auto [known, is_new] = known_.try_emplace(point, 0.0);
+    if (!is_new) return known->second;
+    const double log_score = scored(at(point), training_, samples_).log_score;
+    return known->second = std::isnan(log_score) ? -std::numeric_limits<double>::infinity() : log_score;
+  }
+};
+
+/// The largest part of the training runs whose climbs are affordable; 0: all.
+Index affordable_transitions(const Bank& bank) {
+  constexpr double most_products = 3e7;  // of one pass over the runs; two climbs take about 140 passes
+  const double levels = static_cast<double>(bank.running_noise.levels()),
+               regressors = static_cast<double>(bank.structure.regressors()),
+               outputs = static_cast<double>(bank.structure.states);
+  return static_cast<Index>(most_products / (levels * levels * regressors * regressors * outputs));
+}
+
+}  // namespace
+
+Bank with_noise_levels(const Bank& drifting, const Bank& one_motion, const Recording& recording,
+                       const std::vector<Index>& horizons) {
+  constexpr Index fewest_transitions = 1000;
+  constexpr double least_level = 1e-6;
+  const Index n = drifting.structure.states;
+  if (one_motion.mode_count() == 1) return drifting;
+  Bank frame = drifting;
+  frame.running_noise.level.resize(n, one_motion.mode_count());
+  for (Index j = 0; j < one_motion.mode_count(); ++j)
+    frame.running_noise.level.col(j) =
+        (one_motion.modes[static_cast<std::size_t>(j)].Q.diagonal().head(n) + one_motion.R.diagonal())
+            .cwiseQuotient(drifting.noise_variance())
+            .cwiseMax(least_level);
+  frame.running_noise.switching = one_motion.transition.matrix();
+  const Index most = affordable_transitions(frame);
+  if (most < fewest_transitions) return drifting;
+  const std::optional<Recording> part = learning_part(recording, most, 1);
+  const Recording& training = part ? *part : recording;
+  const Index samples = scored_samples(frame, training);
+  Climb climb(frame, training, samples);
+  // q 1e-3, p0 10, no leak, Gaussian, the lowest floor, v0; a short and a long memory of the variance
+  for (const std::size_t lam : {5, 7}) climb.from({3, 3, 0, lam, 0, 0, 2});
+  Bank bank = climb.best();
+  bank.drift.tuning = scored(bank, training, samples);
+  if (!(bank.drift.tuning.log_score > scored(drifting, training, samples).log_score)) return drifting;
+  choose_horizon_factors(bank, recording, horizons);
   return bank;
 }
 

@@ -3,11 +3,10 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <numeric>
-#include <span>
 #include <stdexcept>
 #include <vector>
 
-#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/competitors/competitors.hpp"
 #include "filter/step/drifting.hpp"
 #include "filter/step/noise_density.hpp"
 #include "filter/step/samples.hpp"
@@ -72,70 +71,42 @@ DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<Tra
   return trace;
 }
 
-/// Running variances of all (lam, floor) of a grid (floor runs fastest), in units of v0, and sums of log densities for
-/// all nu.
-class GridDensities {
- public:
-  explicit GridDensities(const DriftingGrid& grid)
-      : floors_(std::ssize(grid.floor)),
-        floor_(std::ssize(grid.lam) * floors_),
-        keep_(floor_.size()),
-        v_(floor_.size()),
-        square_(floor_.size()),
-        log_variance_(Eigen::ArrayXd::Zero(floor_.size())),
-        tail_(Eigen::ArrayXXd::Zero(floor_.size(), std::ssize(grid.nu))) {
-    for (Index i = 0; i < floor_.size(); ++i) {
-      floor_(i) = grid.floor[static_cast<std::size_t>(i % floors_)];
-      keep_(i) = grid.lam[static_cast<std::size_t>(i / floors_)];
-    }
-    for (const double nu : grid.nu) noise_.emplace_back(nu);
-  }
-
-  /// Processes e^2 / (1 + h'Ph) of one signal from a start on.
-  void follow(std::span<const double> ratios) {
-    v_.setOnes();
-    for (const double ratio : ratios) {
-      square_ = ratio / v_;
-      log_variance_ += v_.log();
-      for (Index d = 0; const StudentNoise& noise : noise_) {
-        if (noise.gaussian())
-          tail_.col(d++) += square_;
-        else
-          tail_.col(d++) += (1.0 + square_ / (noise.degrees() - 2.0)).log();
-      }
-      v_ = (keep_ * v_ + (1.0 - keep_) * ratio).max(floor_);
-    }
-    signals_ += static_cast<double>(ratios.size());
-  }
-
-  /// The sums in the grid's order (lam, nu, floor), without half of log v0 and of log (1 + h'Ph).
-  void write(Eigen::Ref<Eigen::VectorXd> out) const {
-    for (Index d = 0; d < tail_.cols(); ++d) {
-      const StudentNoise& noise = noise_[static_cast<std::size_t>(d)];
-      const double weight = noise.gaussian() ? 0.5 : 0.5 * (noise.degrees() + 1.0);
-      const Eigen::ArrayXd sum = signals_ * noise.log_constant() - 0.5 * log_variance_ - weight * tail_.col(d);
-      for (Index i = 0; i < sum.size(); ++i) out((i / floors_ * tail_.cols() + d) * floors_ + i % floors_) = sum(i);
-    }
-  }
-
- private:
-  Index floors_;
-  Eigen::ArrayXd floor_, keep_, v_, square_, log_variance_;
-  Eigen::ArrayXXd tail_;  ///< per nu: sums of log (1 + z^2 / (nu - 2)); of z^2 for the normal distribution
-  std::vector<StudentNoise> noise_;
-  double signals_ = 0.0;
-};
-
-/// Sums of log densities for all (lam, nu, floor).
+/// Sums of log densities for all (lam, nu, floor), floor fastest. Running variances of all (lam, floor) are in units of
+/// v0.
 void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<Eigen::VectorXd> sums) {
-  GridDensities densities(grid);
-  for (std::size_t i = 0; i < trace.ratio.size(); ++i)
-    for (std::size_t s = 0; s < trace.start[i].size(); ++s) {
-      const std::size_t from = trace.start[i][s];
-      const std::size_t to = s + 1 < trace.start[i].size() ? trace.start[i][s + 1] : trace.ratio[i].size();
-      densities.follow(std::span(trace.ratio[i]).subspan(from, to - from));
+  const Index floors = std::ssize(grid.floor), pairs = std::ssize(grid.lam) * floors;
+  Eigen::ArrayXd floor(pairs), keep(pairs), v(pairs), square(pairs), log_variance = Eigen::ArrayXd::Zero(pairs);
+  for (Index i = 0; i < pairs; ++i) {
+    floor(i) = grid.floor[static_cast<std::size_t>(i % floors)];
+    keep(i) = grid.lam[static_cast<std::size_t>(i / floors)];
+  }
+  const std::vector<StudentNoise> noises(grid.nu.begin(), grid.nu.end());
+  // per nu: sums of log (1 + z^2 / (nu - 2)); of z^2 for the normal distribution
+  Eigen::ArrayXXd tail = Eigen::ArrayXXd::Zero(pairs, std::ssize(noises));
+  double signals = 0.0;
+  for (std::size_t output = 0; output < trace.ratio.size(); ++output) {
+    auto start = trace.start[output].begin();
+    for (std::size_t t = 0; t < trace.ratio[output].size(); ++t) {
+      for (; start != trace.start[output].end() && *start == t; ++start) v.setOnes();
+      const double ratio = trace.ratio[output][t];
+      square = ratio / v;
+      log_variance += v.log();
+      for (Index d = 0; const StudentNoise& noise : noises) {
+        if (noise.gaussian())
+          tail.col(d++) += square;
+        else
+          tail.col(d++) += (1.0 + square / (noise.degrees() - 2.0)).log();
+      }
+      v = (keep * v + (1.0 - keep) * ratio).max(floor);
+      ++signals;
     }
-  densities.write(sums);
+  }
+  for (Index d = 0; const StudentNoise& noise : noises) {
+    const double weight = noise.gaussian() ? 0.5 : 0.5 * (noise.degrees() + 1.0);
+    const Eigen::ArrayXd sum = signals * noise.log_constant() - 0.5 * log_variance - weight * tail.col(d);
+    for (Index i = 0; i < pairs; ++i) sums((i / floors * tail.cols() + d) * floors + i % floors) = sum(i);
+    ++d;
+  }
   sums.array() -= 0.5 * trace.log_variance;
 }
 

@@ -2,10 +2,9 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn/competitors/noise_by_input.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/learn.hpp"
 #include "filter/learn/refine/training_fit.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -166,6 +165,7 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.restarts = 0;
   em.look_ahead = 1;
   em.measurement_noise = false;
+  em.noise_by_input = false;  // the starts have the factor; one without the left-out runs needs the terms
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);
   const MatrixXd R = MatrixXd::Zero(structure.states, structure.states);
   const NoiseFactor factor = options.noise_by_input ? fit_noise_factor(recording, structure, terms) : NoiseFactor();

@@ -1,9 +1,7 @@
-#include "filter/learn/from_mixture/motion_modes.hpp"
-
-#include <tbb/parallel_for.h>
-
+// Modes of a motion model, linearised.
 #include <algorithm>
 
+#include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/linearise.hpp"
@@ -16,40 +14,30 @@ constexpr int max_passes = 50;
 constexpr double pass_tolerance = 1e-10;  // stopping tolerance: relative change of the diagonal of Q
 constexpr int search_iterations = 200;
 
-/// sum g r r' / sum g, with a floor; the global covariance if no transition has weight.
-Eigen::MatrixXd weighted_scatter(const ModelResiduals& residuals, const Eigen::VectorXd& theta,
+/// sum g r r' / W, with a floor; the global covariance if no transition has weight. W is the sum of the weights g.
+Eigen::MatrixXd weighted_scatter(const ModelResiduals& residuals, const Eigen::VectorXd& theta, double W,
                                  const GlobalModel& global) {
   const Index n = residuals.states();
   Eigen::VectorXd r;
   residuals.evaluate(theta.data(), r, nullptr);
   Eigen::MatrixXd scatter = Eigen::MatrixXd::Zero(n, n);
-  double sum = 0.0;
-  for (Index k = 0; k < residuals.samples(); ++k) {
+  for (Index k = 0; k < residuals.samples(); ++k)
     scatter += residuals.weight(k) * r.segment(k * n, n) * r.segment(k * n, n).transpose();
-    sum += residuals.weight(k);
-  }
-  if (!(sum > 0.0)) return global.residual_covariance;
-  return floored_process_noise(scatter / sum, global);
-}
-
-double sum_of_weights(const ModelResiduals& residuals) {
-  double sum = 0.0;
-  for (Index k = 0; k < residuals.samples(); ++k) sum += residuals.weight(k);
-  return sum;
+  if (!(W > 0.0)) return global.residual_covariance;
+  return floored_process_noise(scatter / W, global);
 }
 
 /// (sum g J' Q^-1 J + prior)^-1, with Q corrected for the number of fitted parameters. NaN if theta is not determined.
-Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionMode& mode,
+Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const ModeEstimate& mode,
                                   const ParameterPrior* prior) {
   const Index n = residuals.states(), p = residuals.unknowns();
-  const double W = mode.linear.effective_transitions;
+  const double W = mode.effective_transitions;
   const double lost = static_cast<double>(p) / static_cast<double>(n);
-  const Eigen::MatrixXd Q_inverse =
-      solve_semidefinite(mode.linear.Q, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))) *
-      (std::max(W - lost, 1.0) / std::max(W, 1.0));
+  const Eigen::MatrixXd Q_inverse = solve_semidefinite(mode.Q, Eigen::MatrixXd(Eigen::MatrixXd::Identity(n, n))) *
+                                    (std::max(W - lost, 1.0) / std::max(W, 1.0));
   Eigen::VectorXd r;
   RowMajorJacobian J;
-  residuals.evaluate(mode.theta.data(), r, &J);
+  residuals.evaluate(mode.motion_theta.data(), r, &J);
   Eigen::MatrixXd information = Eigen::MatrixXd::Zero(p, p);
   for (Index k = 0; k < residuals.samples(); ++k)
     information += residuals.weight(k) * J.middleRows(k * n, n).transpose() * Q_inverse * J.middleRows(k * n, n);
@@ -63,49 +51,39 @@ Eigen::MatrixXd motion_covariance(const ModelResiduals& residuals, const MotionM
 
 /// Alternates between theta and the residual variances until both converge.
 void estimate_theta(const ModelResiduals& residuals, const GlobalModel& global, const ParameterPrior* prior,
-                    MotionMode& mode) {
+                    ModeEstimate& mode) {
   const RobustLoss least_squares(Loss::trivial, 0.0);
-  mode.linear.converged = false;
-  for (int pass = 0; pass < max_passes && !mode.linear.converged; ++pass) {
-    const Eigen::VectorXd variance = mode.linear.Q.diagonal();
+  mode.converged = false;
+  for (int pass = 0; pass < max_passes && !mode.converged; ++pass) {
+    const Eigen::VectorXd variance = mode.Q.diagonal();
     const ModelMinimum minimum =
-        minimise_model(residuals, variance.cwiseSqrt(), least_squares, prior, {search_iterations}, mode.theta);
+        minimise_model(residuals, variance.cwiseSqrt(), least_squares, prior, {search_iterations}, mode.motion_theta);
     if (minimum.status == FitStatus::failed) return;
-    mode.theta = minimum.theta;
-    mode.linear.Q = weighted_scatter(residuals, mode.theta, global);
-    mode.linear.converged = (mode.linear.Q.diagonal() - variance).norm() <= pass_tolerance * variance.norm();
+    mode.motion_theta = minimum.theta;
+    mode.Q = weighted_scatter(residuals, mode.motion_theta, mode.effective_transitions, global);
+    mode.converged = (mode.Q.diagonal() - variance).norm() <= pass_tolerance * variance.norm();
   }
 }
 
 }  // namespace
 
-MotionMode fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
-                           const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given) {
+ModeEstimate fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
+                             const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given) {
   const ModelResiduals residuals(model, training_stretches(recording), weights);
-  MotionMode mode;
-  mode.theta = given ? *given : global.theta;
-  mode.linear.effective_transitions = sum_of_weights(residuals);
-  mode.linear.Q = weighted_scatter(residuals, mode.theta, global);
+  ModeEstimate mode;
+  mode.motion_theta = given ? *given : global.theta;
+  for (Index k = 0; k < residuals.samples(); ++k) mode.effective_transitions += residuals.weight(k);
+  mode.Q = weighted_scatter(residuals, mode.motion_theta, mode.effective_transitions, global);
   if (!given) estimate_theta(residuals, global, prior, mode);
 
   const Eigen::MatrixXd covariance = motion_covariance(residuals, mode, prior);
-  mode.standard_error = covariance.diagonal().cwiseSqrt();
-  const LinearisedMotion linear = linearise(model, mode.theta, operating_point(recording, weights));
+  mode.motion_standard_error = covariance.diagonal().cwiseSqrt();
+  const LinearisedMotion linear = linearise(model, mode.motion_theta, operating_point(recording, weights));
   mode.by_motion = linear.by_motion;
-  mode.linear.theta = linear.theta;
-  mode.linear.standard_error =
+  mode.theta = linear.theta;
+  mode.standard_error =
       (linear.by_motion * covariance * linear.by_motion.transpose()).diagonal().cwiseMax(0.0).cwiseSqrt();
   return mode;
-}
-
-std::vector<MotionMode> fit_motion_modes(const Recording& recording, const MotionModel& model,
-                                         const Eigen::MatrixXd& memberships, const GlobalModel& global,
-                                         const ParameterPrior* prior) {
-  std::vector<MotionMode> modes(static_cast<std::size_t>(memberships.cols()));
-  tbb::parallel_for(Index{0}, memberships.cols(), [&](Index k) {
-    modes[static_cast<std::size_t>(k)] = fit_motion_mode(recording, model, memberships.col(k), global, prior, nullptr);
-  });
-  return modes;
 }
 
 }  // namespace modebank

@@ -1,7 +1,5 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 
-#include <tbb/parallel_for.h>
-
 #include <algorithm>
 #include <limits>
 #include <optional>
@@ -98,11 +96,6 @@ Eigen::VectorXd standard_errors(const WeightedRegression& data, const Eigen::Mat
   return (root.cwiseAbs2() * values.cwiseInverse()).cwiseSqrt();
 }
 
-ModeEstimate estimate(const WeightedRegression& data, const Eigen::MatrixXd& beta, const Eigen::MatrixXd& Q,
-                      const ParameterPrior* prior) {
-  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.sums.weight, true};
-}
-
 }  // namespace
 
 Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalModel& global) {
@@ -113,11 +106,11 @@ Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalMode
 }
 
 ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
-                               const GlobalModel& global, const ParameterPrior* prior) {
+                               const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given) {
   const WeightedRegression data = regress(transitions, weights, global.theta);
-  Eigen::MatrixXd beta = data.beta;
+  Eigen::MatrixXd beta = given ? coefficients(transitions.structure, *given) : data.beta;
   Eigen::MatrixXd Q = process_noise(data, beta, global);
-  bool converged = prior == nullptr;
+  bool converged = given || !prior;
   for (int i = 0; i < max_alternations && !converged; ++i) {
     const std::optional<Eigen::MatrixXd> next = regularised(data, Q, *prior);
     if (!next) break;  // not converged
@@ -126,17 +119,7 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
     Q = process_noise(data, beta, global);
     converged = (Q - previous).norm() <= alternation_tolerance * previous.norm();
   }
-  ModeEstimate mode = estimate(data, beta, Q, prior);
-  mode.converged = converged;
-  return mode;
-}
-
-ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
-                                  const GlobalModel& global, const ParameterPrior* prior,
-                                  const Eigen::VectorXd& theta) {
-  const WeightedRegression data = regress(transitions, weights, global.theta);
-  const Eigen::MatrixXd beta = coefficients(transitions.structure, theta);
-  return estimate(data, beta, process_noise(data, beta, global), prior);
+  return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.sums.weight, converged};
 }
 
 double spectral_radius(const LinearModel& model) {
@@ -149,14 +132,6 @@ std::string screening_reason(const LinearStructure& structure, const ModeEstimat
   if (mode.effective_transitions < static_cast<double>(structure.regressors() + 1)) return "starved";
   if (!(spectral_radius(unpack(structure, mode.theta)) <= 1.0 + spectral_radius_slack)) return "unstable";
   return "";
-}
-
-std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
-                                           const GlobalModel& global, const ParameterPrior* prior) {
-  std::vector<ModeEstimate> modes(memberships.cols());
-  tbb::parallel_for(Index{0}, memberships.cols(),
-                    [&](Index k) { modes[k] = fit_weighted_mode(transitions, memberships.col(k), global, prior); });
-  return modes;
 }
 
 }  // namespace modebank

@@ -3,10 +3,11 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <string>
-#include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
+#include "ident/data/trajectory.hpp"
 #include "ident/fit/prior.hpp"
+#include "ident/model/motion_model.hpp"
 
 namespace modebank {
 
@@ -24,12 +25,17 @@ inline double positive_variance(double variance) { return std::max(variance, 1e-
 
 /// One mode from weighted transitions.
 struct ModeEstimate {
-  Eigen::VectorXd theta;  ///< p
+  Eigen::VectorXd theta;  ///< p; of a motion model, the vec of [A B c] at the mode's weighted mean state and input
   Eigen::MatrixXd Q;      ///< n x n, weighted scatter about theta / sum of weights; at least process_noise_floor
   Eigen::VectorXd standard_error;      ///< p, standard errors of theta; NaN if neither data nor prior determine theta
   double effective_transitions = 0.0;  ///< sum of weights
   bool converged = true;               ///< whether theta and Q converged within the iteration limit and Q is positive
                                        ///< definite
+
+  // Of a motion model only; standard errors of theta are propagated by the derivative.
+  Eigen::VectorXd motion_theta = {};           ///< p_motion
+  Eigen::VectorXd motion_standard_error = {};  ///< p_motion
+  Eigen::MatrixXd by_motion = {};              ///< derivative of theta by motion_theta
 };
 
 /// Maximises the following by alternating between theta and Q until both converge:
@@ -37,13 +43,17 @@ struct ModeEstimate {
 /// g are the weights (N, nonnegative), (m, P) the Gaussian prior (`prior` may be null). Directions of theta that
 /// neither data nor prior determine stay at the global model. Standard errors are the square roots of the diagonal of
 /// (Q_u^-1 (x) sum g phi phi' + P^-1)^-1. Q_u = Q W / (W - q) removes the bias of q fitted regressors, with W = sum of
-/// weights. For K = 1 without a prior, theta, Q and standard errors are the global model's.
+/// weights. For K = 1 without a prior, theta, Q and standard errors are the global model's. `given`: a fixed theta that
+/// is only assessed; null to estimate theta.
 ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
-                               const GlobalModel& global, const ParameterPrior* prior);
+                               const GlobalModel& global, const ParameterPrior* prior,
+                               const Eigen::VectorXd* given = nullptr);
 
-/// Q and standard errors of a mode whose theta is given, from the same weights.
-ModeEstimate assess_weighted_mode(const TrainingTransitions& transitions, const Eigen::VectorXd& weights,
-                                  const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd& theta);
+/// fit_weighted_mode for motion models: weighted least squares of the one-step residuals and the prior. The fit
+/// alternates with updates of the residual variances. `weights`: one per training transition. Q is the weighted scatter
+/// / sum of weights, with the floor of a linear mode.
+ModeEstimate fit_motion_mode(const Recording& recording, const MotionModel& model, const Eigen::VectorXd& weights,
+                             const GlobalModel& global, const ParameterPrior* prior, const Eigen::VectorXd* given);
 
 /// Raises the eigenvalues of a process noise covariance to the floor. The floor is in units of the global residual
 /// variances.
@@ -59,9 +69,5 @@ double spectral_radius(const LinearModel& model);
 /// Reason why a bank cannot use a mode: "starved" (fewer effective transitions than regressors + 1) or "unstable"
 /// (spectral radius of I + A above 1). Empty if the mode is usable.
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode);
-
-/// Fits one mode per column of `memberships` (N x K), in parallel; mode k depends on column k alone.
-std::vector<ModeEstimate> fit_pooled_modes(const TrainingTransitions& transitions, const Eigen::MatrixXd& memberships,
-                                           const GlobalModel& global, const ParameterPrior* prior);
 
 }  // namespace modebank

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"
@@ -15,10 +16,12 @@ namespace modebank {
 std::vector<SplitData> split_data(const RefineInput& in) {
   std::vector<SplitData> splits;
   for (ValidationSplit& split : validation_splits(in.recording, in.options.folds, refine_tuning)) {
-    TrainingTransitions transitions =
-        gather_training_transitions(split.training, in.frame.structure, in.frame.noise_factor);
+    Bank frame = in.frame;
+    if (in.options.noise_by_input && !frame.noise_factor.empty())
+      frame.noise_factor = fit_noise_factor(split.training, frame.structure);
+    TrainingTransitions transitions = gather_training_transitions(split.training, frame.structure, frame.noise_factor);
     GlobalModel global = fit_global(split.training, in.frame.structure);
-    splits.push_back({std::move(split), std::move(transitions), std::move(global)});
+    splits.push_back({std::move(split), std::move(frame), std::move(transitions), std::move(global)});
   }
   return splits;
 }
@@ -49,7 +52,7 @@ SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits
 
 SplitFits::SplitFits(const RefineInput& in, const std::vector<SplitData>& splits, std::vector<SwitchingPrior> priors,
                      std::vector<SwitchingRegression> starts)
-    : in_(in), priors_(std::move(priors)), fits_(splits.size()) {
+    : splits_(splits), priors_(std::move(priors)), fits_(splits.size()) {
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
     fits_[s] = std::make_unique<ExpectationMaximisation>(splits[s].transitions, priors_[s], em_options(in.options),
                                                          std::move(starts[s]));
@@ -69,7 +72,7 @@ bool SplitFits::converged() const {
 
 std::vector<Bank> SplitFits::banks() const {
   std::vector<Bank> banks;
-  for (const auto& fit : fits_) banks.push_back(with_modes(in_.frame, fit->model()));
+  for (std::size_t s = 0; s < fits_.size(); ++s) banks.push_back(with_modes(splits_[s].frame, fits_[s]->model()));
   return banks;
 }
 

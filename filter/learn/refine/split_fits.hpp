@@ -15,6 +15,7 @@ namespace modebank {
 /// The data of one split for fits.
 struct SplitData {
   ValidationSplit runs;
+  Bank frame;                       ///< RefineInput::frame, with a noise factor of these training runs
   TrainingTransitions transitions;  ///< of runs.training
   GlobalModel global;               ///< global model of the split's training transitions
 };
@@ -40,7 +41,7 @@ class SplitFits {
   std::vector<Bank> banks() const;
 
  private:
-  const RefineInput& in_;
+  const std::vector<SplitData>& splits_;
   std::vector<SwitchingPrior> priors_;
   std::vector<std::unique_ptr<ExpectationMaximisation>> fits_;
   Index done_ = 0;

@@ -6,8 +6,8 @@
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
-#include "filter/learn/from_mixture/transition_learning.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/seed.hpp"

@@ -8,7 +8,7 @@
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"

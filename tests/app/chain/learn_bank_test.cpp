@@ -49,15 +49,14 @@ TEST_F(LearnBank, IsThatOfRun) {
 
 TEST_F(LearnBank, IsThatOfRunWithEveryStageAskedOtherwise) {
   LearnOptions options = as_the_fixture_has_it();
-  options.noise_by_input = false;
   options.window.loss = Loss::cauchy;
   options.mixture.selection.components = {1, 2, 3};
   options.mixture.selection.em.covariance = CovarianceType::diagonal;
   options.seed = 9;
-  expect_the_bank_of_run({"--window.model", "linear", "--window.length", "20", "--window.step", "1",
-                          "--bank.noise_by_input", "none", "--window.loss", "cauchy", "--mixture.components", "1..3",
-                          "--mixture.covariance", "diagonal", "--job.seed", "9", "--bank.refine", "auto"},
-                         options);
+  expect_the_bank_of_run(
+      {"--window.model", "linear", "--window.length", "20", "--window.step", "1", "--window.loss", "cauchy",
+       "--mixture.components", "1..3", "--mixture.covariance", "diagonal", "--job.seed", "9", "--bank.refine", "auto"},
+      options);
 }
 
 TEST_F(LearnBank, IsThatOfRunWithoutRefinement) {

@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/learn/learn.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/simulate/simulate.hpp"
 #include "mixture/features.hpp"

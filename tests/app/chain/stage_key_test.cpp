@@ -107,7 +107,7 @@ const std::vector<KeyValues> bases{
     {{"mixture.components", "2"}, {"bank.refine", "none"}, {"filter.simulate", "5"}},
     {{"mixture.components", "2"}, {"bank.refine", "em"}},
     {{"window.model", "varx"}, {"mixture.components", "2"}},
-    {{"bank.noise", "fixed"}, {"bank.transition", "stay"}},
+    {{"bank.process_variance", "0.01"}, {"bank.transition", "stay"}},
 };
 
 /// Other values for keys whose range is not described by a rule.
@@ -194,7 +194,7 @@ const std::vector<RuledOut> ruled_out{
     {"window.input_delay", "need window.model = varx"},
     {"window.input_delay", "need model = varx"},
     {"bank.transition", "bank.transition = logit"},
-    {"bank.noise", "does not work with bank.refine = em"},
+    {"bank.process_variance", "does not work with bank.refine = em"},
     {"bank.refine", "does not work with bank.refine = em"},
 };
 

@@ -10,7 +10,7 @@
 
 #include "app/config/config_file.hpp"
 #include "app/config/option_table.hpp"
-#include "filter/learn/chain/stage_structures.hpp"
+#include "filter/learn/chain/stages.hpp"
 #include "io/archive/archive.hpp"
 #include "tests/app/cli_fixture.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

@@ -50,7 +50,7 @@ class ExportedCOfRobots : public CliTest {
 TEST_F(ExportedCOfRobots, Demo) {
   simulate("simulate_demo.ini");
   // A bank whose noise depends on the inputs cannot be exported.
-  learn("demo.ini", {"--data.root", file("data").string(), "--bank.noise_by_input", "none"});
+  learn("demo.ini", {"--data.root", file("data").string(), "--bank.measurement_variance", "1e-6"});
   expect_same();
 }
 

@@ -11,12 +11,6 @@ namespace {
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-class Warnings : public Listener {
- public:
-  void warning(const std::string& text) const override { said += text + "\n"; }
-  mutable std::string said;
-};
-
 /// Three modes with the labels: 60 of 100 samples on ice, 59 of 100 on ice, 40 of 40 on grip.
 Archive labelled() {
   Archive archive = screen_archive(1, 1, 3);
@@ -27,11 +21,12 @@ Archive labelled() {
 }
 
 TEST(ModeNames, AreTheLabelsOfSixtyPercentOfTheSamples) {
-  const Warnings warnings;
+  std::string said;
+  const Tell warnings = [&](Level, const std::string& text) { said += text + "\n"; };
   Archive archive = labelled();
   EXPECT_THAT(mode_names_of(archive, {}, warnings), ElementsAre("ice", "", "grip"));
   EXPECT_THAT(mode_names_of(archive, {"wet", "", "dry"}, warnings), ElementsAre("wet", "", "dry"));
-  EXPECT_THAT(warnings.said, IsEmpty());
+  EXPECT_THAT(said, IsEmpty());
   for (ConfusionRow& row : archive.confusion) row.label = row.label == "ice" ? "-1" : "2";
   EXPECT_THAT(mode_names_of(archive, {}, warnings), ElementsAre("label -1", "", "label 2")) << "no numbers of modes";
   archive.confusion.clear();

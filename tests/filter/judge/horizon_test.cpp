@@ -1,4 +1,6 @@
 // Predictions some samples ahead: by banks, by banks with lags, and by the drifting model.
+#include "filter/judge/horizon.hpp"
+
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
@@ -9,7 +11,6 @@
 #include <vector>
 
 #include "filter/judge/forecast.hpp"
-#include "filter/judge/horizon.hpp"
 #include "filter/step/drifting.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"

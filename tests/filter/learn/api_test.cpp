@@ -65,7 +65,6 @@ TEST(LearnDoor, BadArgumentsAreNamed) {
   options.window.step = 0;
   EXPECT_THROW(learn::learn_bank(test::recorded_runs(two_modes()), options), std::invalid_argument);
   options = {};
-  options.bank.noise = NoiseSource::fixed;
   options.bank.process_variance = -1.0;
   EXPECT_THROW(learn::learn_bank(test::recorded_runs(two_modes()), options), std::invalid_argument);
   EXPECT_THROW(learn::learn_bank({}), std::invalid_argument);

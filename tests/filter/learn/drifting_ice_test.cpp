@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "filter/judge/horizon.hpp"
-#include "filter/learn/competitors/drifting.hpp"
+#include "filter/learn/competitors/competitors.hpp"
 #include "ident/fit/global_model.hpp"
 #include "io/import/import.hpp"
 #include "tests/support/golden.hpp"

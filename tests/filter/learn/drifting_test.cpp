@@ -1,6 +1,4 @@
 // How the settings of a drifting model are chosen.
-#include "filter/learn/competitors/drifting.hpp"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -8,6 +6,7 @@
 #include <stdexcept>
 
 #include "filter/judge/horizon.hpp"
+#include "filter/learn/competitors/competitors.hpp"
 #include "filter/step/noise_density.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/filter/drifting_test_support.hpp"

@@ -130,24 +130,20 @@ TEST(LearnBank, RefinementIsTheDefaultOfWhatItDoesNotUndo) {
   EXPECT_EQ(refinement_asked(options, true), Refine::none);
   BankOptions mean, fixed, stay;
   mean.theta = ThetaSource::mean;
-  fixed.noise = NoiseSource::fixed;
+  fixed.process_variance = 0.01;
   stay.transition = TransitionSource::stay;
   for (const BankOptions& kept : {mean, fixed, stay}) EXPECT_EQ(refinement_asked(kept, true), Refine::none);
 }
 
-TEST(LearnBank, NoiseMayBeSharedOrFixed) {
+TEST(LearnBank, NoiseMayBeGiven) {
   const Case data({-0.2, -0.8});
   const Bank own = data.learn();
   BankOptions options;
-  options.noise = NoiseSource::shared;
-  const Bank shared = data.learn(options);
-  options.noise = NoiseSource::fixed;
   options.process_variance = 0.02;
   options.measurement_variance = 0.03;
   const Bank fixed = data.learn(options);
   EXPECT_NE(own.modes[0].Q(0, 0), own.modes[1].Q(0, 0));
   for (Index j = 0; j < 2; ++j) {
-    EXPECT_NEAR(shared.modes[j].Q(0, 0), 0.5 * (own.modes[0].Q(0, 0) + own.modes[1].Q(0, 0)), bank_exact);
     EXPECT_EQ(fixed.modes[j].Q(0, 0), 0.02);
     EXPECT_TRUE(near(fixed.theta(j), own.theta(j), 0.0));
   }
@@ -242,6 +238,60 @@ TEST(LearnBank, BadArgumentsAreNamed) {
                std::invalid_argument);
   data.fits.structure.inputs = 2;
   EXPECT_THROW(data.learn(), std::invalid_argument);
+}
+
+/// Rounding error of a few divisions.
+constexpr double row_rounding = 1e-14;
+
+WindowFits windows(std::initializer_list<Window> list, Index step) {
+  WindowFits fits;
+  fits.step = step;
+  fits.windows = list;
+  return fits;
+}
+
+TEST(LabelTransitions, CountsNeighboursWithinRuns) {
+  const WindowFits fits = windows({{0, 0}, {0, 2}, {0, 4}, {0, 8}, {1, 0}, {1, 2}, {1, 4}, {1, 6}}, 2);
+  Eigen::VectorXi labels(8);
+  labels << 0, 0, 1, 1, 1, -1, 1, 0;
+  // Counts: 0->0 and 0->1. Windows 4 and 8 have a gap between them. Then a new run begins. The window without a mode
+  // counts as the previous mode: 1->1 twice; 1->0.
+  Eigen::MatrixXd expected(2, 2);
+  expected << 1, 1, 1, 2;
+  EXPECT_TRUE(near(count_label_transitions(fits, labels, {0, 1}), expected, 0.0));
+}
+
+TEST(LabelTransitions, AScreenedModeCountsAsTheModeBefore) {
+  const WindowFits fits = windows({{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}}, 1);
+  Eigen::VectorXi labels(5);
+  labels << 0, 1, 2, 2, 0;
+  Eigen::MatrixXd expected(2, 2);  // components 0 and 2 are kept
+  expected << 1, 1, 1, 1;
+  EXPECT_TRUE(near(count_label_transitions(fits, labels, {0, 2}), expected, 0.0));
+}
+
+TEST(TransitionFromCounts, SmoothsByATenth) {
+  Eigen::MatrixXd counts(2, 2);
+  counts << 9, 1, 0, 0;
+  Eigen::MatrixXd expected(2, 2);
+  expected << 9.1 / 10.2, 1.1 / 10.2, 0.5, 0.5;
+  EXPECT_TRUE(near(transition_from_counts(counts, 1).matrix(), expected, row_rounding));
+}
+
+TEST(TransitionFromCounts, LongerStepsTakeTheRootOfTheDiagonal) {
+  Eigen::MatrixXd counts(3, 3);
+  counts << 7.9, 0.9, 0.9, 0.4, 3.9, 1.4, 0, 0, 0;
+  const double stay0 = std::cbrt(0.8), stay1 = std::cbrt(4.0 / 6.0), stay2 = std::cbrt(1.0 / 3.0);
+  Eigen::MatrixXd expected(3, 3);
+  expected << stay0, (1 - stay0) / 2, (1 - stay0) / 2,  //
+      (1 - stay1) / 4, stay1, (1 - stay1) * 3 / 4,      //
+      (1 - stay2) / 2, (1 - stay2) / 2, stay2;
+  EXPECT_TRUE(near(transition_from_counts(counts, 3).matrix(), expected, row_rounding));
+}
+
+TEST(TransitionFromCounts, OneModeStays) {
+  EXPECT_TRUE(
+      near(transition_from_counts(Eigen::MatrixXd::Constant(1, 1, 5.0), 4).matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
 }
 
 }  // namespace

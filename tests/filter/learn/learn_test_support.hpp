@@ -7,7 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn/learn.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "ident/fit/global_model.hpp"
 #include "tests/support/golden.hpp"
 

@@ -11,7 +11,7 @@
 #include <optional>
 #include <random>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 

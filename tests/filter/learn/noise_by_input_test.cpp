@@ -1,6 +1,4 @@
 // Noise that depends on state and input: the factor on every mode's Q, and whether training runs accept the factor.
-#include "filter/learn/competitors/noise_by_input.hpp"
-
 #include <gtest/gtest.h>
 
 #include <boost/random/normal_distribution.hpp>
@@ -12,7 +10,9 @@
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/free_run.hpp"
 #include "filter/judge/sample_paths.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/likelihood_gradient.hpp"
 #include "ident/base/linalg.hpp"
@@ -219,37 +219,24 @@ TEST(FindNoiseFactor, DoesNotDependOnUnits) {
                   b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
 }
 
-TEST(LearnRefinedBank, HasTheFactorWhereRunsLeftOutDoNotLoseByIt) {
+/// Q is computed from rows divided by their factor, and R is negligible. Runs that judge a fit did not learn its
+/// factor.
+TEST(LearnRefinedBank, HasTheFactorOfItsOwnTrainingRuns) {
   const Recording recording = runs_of(follows_input, 9, 4, 250);
   WindowFits fits = test::windows_of(recording, 20, 10);
   const MixtureResult one = test::mixture_of(fits, MatrixXd::Ones(1, fits.count()));
   BankOptions options;
   options.em.noise_by_input = true;
-  const Bank bank = learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank;
-  EXPECT_FALSE(bank.noise_factor.empty());
-}
-
-/// A bank that starts with a factor keeps this factor. Q is computed from rows divided by their factor, and R is
-/// negligible.
-TEST(NoiseFactor, OfAStartIsKeptByRefinement) {
-  const Recording recording = runs_of(follows_input, 8, 6, 300);
-  WindowFits fits = test::windows_of(recording, 20, 10);
-  fits.global = fit_global(recording, fits.structure);
-  Bank start = bank_of(recording, fits.structure, 0.0, 2);
-  start.noise_factor = fit_noise_factor(recording, fits.structure);
-  RefineOptions options = test::quick();
-  const Refinement refined = refine_bank(recording, fits, {start}, options, {});
-  EXPECT_EQ(refined.bank.noise_factor.weights, start.noise_factor.weights);
+  const Refinement refined = learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {});
+  EXPECT_EQ(refined.bank.noise_factor.weights, fit_noise_factor(recording, fits.structure).weights);
   EXPECT_EQ(refined.bank.R_standard_error.size(), 0);
   EXPECT_TRUE(refined.bank.modes.front().standard_error.allFinite());
-  double plain = 0.0, with_factor = 0.0;
-  start.noise_factor = {};
-  const Bank without = refine_bank(recording, fits, {start}, options, {}).bank;
-  for (const Trajectory& run : recording.runs) {
-    plain += log_likelihood(without, run, {});
-    with_factor += log_likelihood(refined.bank, run, {});
-  }
-  EXPECT_GT(with_factor, plain);
+  const std::vector<ValidationSplit> splits = validation_splits(recording, options.em.folds);
+  ASSERT_EQ(refined.of_splits.size(), splits.size());
+  for (std::size_t s = 0; s < splits.size(); ++s)
+    EXPECT_EQ(refined.of_splits[s].noise_factor.weights, fit_noise_factor(splits[s].training, fits.structure).weights);
+  options.em.folds = 1;  // no run is left out: two scores that are NaN accept nothing
+  EXPECT_TRUE(learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank.noise_factor.empty());
 }
 
 }  // namespace

@@ -1,6 +1,11 @@
-// The competitor `noise_only`. Its theta, standard errors and noise levels: tests/program/golden_test.py.
+// The competitors `noise_only` and `one_motion`. The theta of the first, standard errors and noise levels:
+// tests/program/golden_test.py.
 #include <gtest/gtest.h>
 
+#include <boost/random/normal_distribution.hpp>
+#include <random>
+
+#include "filter/learn/chain/chain.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -49,6 +54,29 @@ TEST(NoiseOnlyEdge, ExactDataKeepVariancesPositive) {
   const Bank bank = learn_noise_only(recording, test::structure_of(recording), Eigen::MatrixXd::Constant(1, 1, 1e-6));
   for (const Mode& mode : bank.modes) EXPECT_GT(mode.Q(0, 0), 0.0);
   EXPECT_TRUE(bank.theta(0).allFinite());
+}
+
+/// Noise that follows the input by a step, as a bank with logit transitions may know it. A rival without such
+/// transitions would leave their gain to the modes.
+TEST(OneMotion, HasTheBanksTransitionsByStateAndInput) {
+  std::mt19937_64 generator(3);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = test::empty_recording(1, 1);
+  for (int run = 0; run < 6; ++run) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 200), u(1, 200);
+    for (Index k = 0; k < 200; ++k) {
+      u(k) = normal(generator);
+      if (k < 199) x(k + 1) = 0.5 * x(k) + u(k) + (u(k) > 0.0 ? 0.5 : 0.02) * normal(generator);
+    }
+    test::add_run(recording, x, u);
+  }
+  LearningOptions options;
+  options.terms = "none";
+  options.mixture.selection.components = {2};
+  options.bank.transition = TransitionSource::logit;
+  Learning learned;
+  learn_all(recording, options, Stage::bank, {}, learned);
+  EXPECT_FALSE(learned.one_motion->transition_logit.empty());
 }
 
 }  // namespace

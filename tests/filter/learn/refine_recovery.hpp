@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "filter/judge/diagnostics.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/refine/refine.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"

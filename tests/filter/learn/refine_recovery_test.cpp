@@ -6,7 +6,8 @@
 
 #include <cmath>
 
-#include "filter/learn/learn.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/starts.hpp"

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/switching/em.hpp"
 #include "filter/learn/switching/starts.hpp"
 #include "ident/base/linalg.hpp"

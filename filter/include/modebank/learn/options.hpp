@@ -19,15 +19,6 @@ struct EnumNames<ThetaSource> {
   static constexpr Names<2> values{"pooled", "mean"};
 };
 
-/// Source of the modes' process noise Q: the mode's own residuals, the residuals of all modes together, or a given
-/// variance.
-enum class NoiseSource { per_mode, shared, fixed };
-
-template <>
-struct EnumNames<NoiseSource> {
-  static constexpr Names<3> values{"per-mode", "shared", "fixed"};
-};
-
 /// Source of the transition matrix. labels: transitions between labels of neighbouring windows. stay:
 /// BankOptions::stay. logit: like labels; in a refined bank the transition probabilities also depend on state and
 /// input, if this raises the score of training runs that were left out.
@@ -40,7 +31,7 @@ struct EnumNames<TransitionSource> {
 
 /// Refinement after the mixture: none, or expectation-maximisation of the switching model. automatic: em, unless it is
 /// impossible or would undo another option. em is impossible for the modes of a motion model. It would undo a theta, Q
-/// or T that is given or taken from the mixture (ThetaSource::mean, NoiseSource::shared or fixed,
+/// or T that is given or taken from the mixture (ThetaSource::mean, process_variance,
 /// TransitionSource::stay).
 enum class Refine { automatic, none, em };
 
@@ -92,10 +83,9 @@ struct RefineOptions {
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.
 struct BankOptions {
   ThetaSource theta = ThetaSource::pooled;                 ///< source of a mode's parameters
-  NoiseSource noise = NoiseSource::per_mode;               ///< source of Q
   TransitionSource transition = TransitionSource::labels;  ///< source of the transition matrix
   double stay = 0.95;                          ///< diagonal of the transition matrix for TransitionSource::stay
-  double process_variance = 0.01;              ///< Q diagonal for NoiseSource::fixed [state unit^2]
+  std::optional<double> process_variance;      ///< Q diagonal [state unit^2]; if empty, each mode learns its own Q
   std::optional<double> measurement_variance;  ///< R diagonal [state unit^2]; if empty, R of the baseline is used
   bool screen = true;                          ///< whether unstable and starved modes are removed
   Refine refine = Refine::automatic;           ///< whether the bank is refined by expectation-maximisation
@@ -115,8 +105,6 @@ struct LearnOptions {
                                   ///< replace those in `window`. Not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
   bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
-  bool noise_by_input = true;     ///< whether process noise may have a factor that follows states and inputs. The
-                                  ///< factor must gain on training runs that were left out
 };
 
 }  // namespace modebank

@@ -7,19 +7,15 @@
 #include "filter/judge/combination.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/learn/chain/stages.hpp"
-#include "filter/learn/competitors/drifting.hpp"
-#include "filter/learn/learn.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/left_out/folds.hpp"
-#include "filter/learn/refine/learning_part.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/terms/find_terms.hpp"
-#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
-
-using OfSplits = std::vector<std::pair<std::string, std::vector<Bank>>>;
 
 /// Chooses the terms again from the runs of the split, because terms score too well on the runs that chose them. If
 /// these runs give no terms, the terms of all training runs are fitted to them.
@@ -39,22 +35,25 @@ Bank relearn_nonlinear(const CompetitorsPart& learned, const Recording& training
 /// The filters learned without the left-out runs of a split. Some come from refinement; the other filters get new
 /// coefficients. A few numbers are not learned again: Q and R of a baseline that is not of the linear stage, and the
 /// rates of `drifting`.
-Learning learned_on(const Learning& learned, const Recording& training, const BankInputs& inputs,
-                    const OfSplits& of_splits, std::size_t split) {
+Learning learned_on(const Learning& learned, const Recording& training, const BankInputs& inputs, const Bank& bank,
+                    const Bank& one_motion) {
   Learning anew;
-  for (const auto& [name, banks] : of_splits) (name == "bank" ? anew.bank : anew.one_motion) = banks.at(split);
+  anew.bank = bank;
+  anew.one_motion = one_motion;
   const auto global_of = [&](const LinearStructure& structure) { return fit_global(training, structure); };
-  if (inputs.single) anew.baseline = learn_single(training, *inputs.single);
+  if (inputs.lags.armax) anew.baseline = learn_armax(training, *inputs.lags.armax, inputs.bank.measurement_variance);
   if (!anew.baseline && learned.baseline) {
     anew.baseline = learned.baseline;
     const LinearStructure& structure = anew.baseline->structure;
     anew.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
   }
-  if (learned.noise_only) {
-    anew.noise_only = inputs.single && learned.noise_only->noise_factor.empty()
-                          ? noise_levels_of(*anew.baseline, training)
-                          : learn_noise_only(training, learned.noise_only->structure, anew.baseline->R,
-                                             learned.noise_only->noise_factor);
+  if (learned.noise_only && inputs.lags.armax && learned.noise_only->noise_factor.empty()) {
+    anew.noise_only = noise_levels_of(*anew.baseline, training);
+  } else if (learned.noise_only) {
+    const LinearStructure& structure = learned.noise_only->structure;
+    const NoiseFactor factor =
+        learned.noise_only->noise_factor.empty() ? NoiseFactor() : fit_noise_factor(training, structure);
+    anew.noise_only = learn_noise_only(training, structure, anew.baseline->R, factor);
   }
   if (learned.drifting)
     anew.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
@@ -64,23 +63,20 @@ Learning learned_on(const Learning& learned, const Recording& training, const Ba
 
 }  // namespace
 
-std::vector<LeftOutRow> score_left_out(const Recording& recording, const Learning& learned, const BankInputs& inputs,
-                                       const OfSplits& of_splits, const Progress& progress) {
-  if (!inputs.one_motion || !inputs.filter) return {};
+std::vector<LeftOutRow> score_left_out(const StageData& data, const Learning& learned, const BankInputs& inputs,
+                                       const std::vector<Bank>& banks, const std::vector<Bank>& one_motions) {
+  if (!inputs.filter) return {};
   const Stopwatch watch;
-  const RefineOptions& em = inputs.bank.em;
-  const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
-  const std::vector<ValidationSplit> splits = validation_splits(part ? *part : recording, em.folds, refine_tuning);
-  if (splits.empty() || std::any_of(of_splits.begin(), of_splits.end(),
-                                    [&](const auto& one) { return one.second.size() != splits.size(); }))
-    return {};
-  std::vector<Index> horizons = inputs.one_motion->horizon;
+  const std::vector<ValidationSplit> splits = validation_splits(data.part, inputs.bank.em.folds, refine_tuning);
+  if (splits.empty() || banks.size() != splits.size() || one_motions.size() != splits.size()) return {};
+  std::vector<Index> horizons = inputs.horizon;
   horizons.push_back(1);
   std::vector<std::string> names;
   std::vector<std::vector<HorizonEvaluation>> forecasts;
   std::vector<std::vector<LearnedFilter>> filters(splits.size());
   tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
-    filters[s] = learned_filters(learned_on(learned, splits[s].training, inputs, of_splits, s), *inputs.filter);
+    filters[s] =
+        learned_filters(learned_on(learned, splits[s].training, inputs, banks[s], one_motions[s]), *inputs.filter);
   });
   for (const LearnedFilter& one : filters.front()) names.push_back(one.name);
   forecasts.resize(names.size());
@@ -94,7 +90,8 @@ std::vector<LeftOutRow> score_left_out(const Recording& recording, const Learnin
         forecasts[f][first + r] = evaluate_horizons(one.bank, runs[r], one.options, horizons);
       });
     }
-  progress.progress(
+  data.tell(
+      Level::progress,
       fmt::format("left out: scored {} filters on training runs, each learned without the scored run, in {:.2f} s",
                   names.size(), watch.seconds()));
   return left_out_rows(names, forecasts);

@@ -1,3 +1,4 @@
+// One motion whose noise switches between levels: noise_only, one_motion.
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -5,12 +6,13 @@
 #include <utility>
 #include <vector>
 
-#include "filter/learn/from_mixture/bank_frame.hpp"
+#include "filter/learn/competitors/competitors.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/learn.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/sample_quantile.hpp"
 #include "ident/fit/global_model.hpp"
@@ -74,10 +76,9 @@ void choose_stay(Bank& bank, const Recording& recording) {
   }
 }
 
-}  // namespace
-
-Bank learn_noise_levels(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                        Index levels, const NoiseFactor& factor) {
+/// One motion with Huber's theta and this number of noise scales.
+Bank with_noise_scales(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                       Index levels, const NoiseFactor& factor) {
   Bank bank = bank_frame(recording, structure, R);
   bank.noise_factor = factor;
   Transitions transitions = stack_training(recording, structure);
@@ -94,8 +95,6 @@ Bank learn_noise_levels(const Recording& recording, const LinearStructure& struc
   choose_stay(bank, recording);
   return bank;
 }
-
-namespace {
 
 /// Improves theta and noise levels of rounded states by the filter's likelihood, whose R has the rounding. The search
 /// starts from the residuals of rounded values, which include the rounding, too.
@@ -129,8 +128,60 @@ Bank noise_levels_of(const Bank& single, const Recording& recording) {
 
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor) {
-  Bank bank = learn_noise_levels(recording, structure, R, noise_only_levels, factor);
+  Bank bank = with_noise_scales(recording, structure, R, noise_only_levels, factor);
   return bank.is_quantised() ? beside_rounding(std::move(bank), recording) : bank;
+}
+
+namespace {
+
+/// The fields of the windows that refinement of a linear model uses.
+WindowFits linear_frame(const WindowFits& fits, const GlobalModel& global) {
+  WindowFits frame;
+  frame.structure = fits.structure;
+  frame.length = fits.length;
+  frame.step = fits.step;
+  frame.global = global;
+  // The prior of a motion model concerns other parameters.
+  if (fits.model_parameters.empty()) frame.prior_sd = fits.prior_sd;
+  return frame;
+}
+
+/// The frame with the noises and the transitions of `rival`, and one theta.
+Bank with_noises_of(const Bank& rival, Bank frame, const GlobalModel& global) {
+  const Index n = frame.structure.states, p = frame.structure.parameters();
+  frame.modes.clear();
+  for (const Mode& mode : rival.modes)
+    frame.modes.push_back(make_mode(frame.structure, global.theta, mode.Q.topLeftCorner(n, n),
+                                    Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), mode.weight));
+  set_mode_sequence(frame, rival.transition);
+  return frame;
+}
+
+}  // namespace
+
+std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                               Index most, double kept, const NoiseFactor& factor) {
+  std::vector<Bank> starts;
+  for (Index levels = most; levels >= 1; levels = static_cast<Index>(kept * static_cast<double>(levels)))
+    starts.push_back(with_noise_scales(recording, structure, R, levels, factor));
+  return starts;
+}
+
+Refinement learn_one_motion(const Recording& recording, const WindowFits& fits, const GlobalModel& global,
+                            const Bank& rival, const Eigen::MatrixXd& R, Index most_levels,
+                            const BankOptions& options) {
+  RefineOptions em = options.em;
+  em.one_theta = true;
+  em.state_dependent_transition = options.transition == TransitionSource::logit;
+  em.restarts = 0;  // random stretches differ in theta, but this model has one theta
+  em.measurement_noise = em.measurement_noise && !options.measurement_variance;
+  std::vector<Bank> starts =
+      level_starts(recording, fits.structure, stated_or(options, R), most_levels, refine_tuning.modes_kept,
+                   em.noise_by_input ? fit_noise_factor(recording, fits.structure) : NoiseFactor());
+  if (rival.mode_count() > 1) starts.push_back(with_noises_of(rival, starts.front(), global));
+  Refinement learned = refine_bank(recording, linear_frame(fits, global), starts, em, FilterOptions{});
+  clear_unidentifiable(learned.bank, global.covariance);
+  return learned;
 }
 
 }  // namespace modebank
