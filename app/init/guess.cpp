@@ -8,7 +8,6 @@
 
 #include "app/init/mounting.hpp"
 #include "app/init/unreachable_commands.hpp"
-#include "app/init/why_text.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/printable.hpp"
 #include "io/arrays/array_reader.hpp"

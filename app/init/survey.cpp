@@ -7,7 +7,6 @@
 #include <cmath>
 #include <optional>
 
-#include "app/init/why_text.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"

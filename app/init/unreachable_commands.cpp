@@ -5,11 +5,9 @@
 
 #include <algorithm>
 #include <array>
-#include <boost/algorithm/string/replace.hpp>
 #include <cmath>
 #include <optional>
 #include <string>
-#include <string_view>
 
 namespace modebank::app {
 namespace {
@@ -17,28 +15,16 @@ namespace {
 constexpr std::array command_words{" cmd ", " command ", " commanded ", " setpoint ", " desired ", " target "};
 constexpr std::array measured_words{" wheel ", " measured ", " meas ", " actual ", " encoder ", " feedback "};
 
-/// The name without one of these words: the first word that the name contains. Empty if it contains none.
-template <std::size_t size>
-std::string without(const std::array<const char*, size>& list, const std::string& name) {
-  std::string words = words_of_name(name);
-  for (const char* const word : list)
-    if (words.find(word) != std::string::npos) {
-      boost::replace_first(words, word, " ");
-      return words;
-    }
-  return {};
-}
-
 double reach_of(const SurveyedChannel& channel) {
   return std::max(std::abs(channel.check.least), std::abs(channel.check.largest));
 }
 
 /// The channel in the command's table that measures the same quantity; empty if there is none.
 std::optional<std::size_t> counterpart(const SurveyedTable& table, const SurveyedChannel& command) {
-  const std::string rest = without(command_words, command.name);
+  const std::string rest = words_without(command_words, command.name);
   if (rest.empty()) return std::nullopt;
   for (std::size_t c = 0; c < table.channels.size(); ++c)
-    if (table.channels[c].moves() && without(measured_words, table.channels[c].name) == rest) return c;
+    if (table.channels[c].moves() && words_without(measured_words, table.channels[c].name) == rest) return c;
   return std::nullopt;
 }
 

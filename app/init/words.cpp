@@ -1,10 +1,15 @@
 #include "app/init/words.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <set>
 
 #include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
+#include "io/csv/csv_number.hpp"
 #include "io/table/name_unit.hpp"
 
 namespace modebank::app {
@@ -154,13 +159,14 @@ bool names_time(std::string_view name) { return ends_with_any(time_names, words_
 bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 
-std::string words_of_measured(std::string_view name) {
+std::string words_without(std::span<const char* const> list, std::string_view name) {
   std::string words = words_of_name(name);
-  for (const std::string_view set_point : set_point_words)
-    if (const std::size_t at = words.find(set_point); at != std::string::npos)
-      return words.replace(at, set_point.size(), " ");
+  for (const std::string_view word : list)
+    if (const std::size_t at = words.find(word); at != std::string::npos) return words.replace(at, word.size(), " ");
   return {};
 }
+
+std::string words_of_measured(std::string_view name) { return words_without(set_point_words, name); }
 
 bool names_nanoseconds(std::string_view name) {
   constexpr std::array names{" nsecs ", " nsec ", " nanosec ", " nanosecs ", " nanoseconds ", " ns "};
@@ -220,6 +226,33 @@ bool unit_of_measured(std::string_view unit) {
 bool unit_of_acting(std::string_view unit) {
   constexpr std::array<std::string_view, 9> units{"V", "A", "%", "N", "Nm", "N m", "N.m", "W", "rpm"};
   return is_one_of(units, unit);
+}
+
+std::string why_no_numbers(const std::vector<std::string>& texts) {
+  const std::string *like_number = nullptr, *first = nullptr;
+  bool numbers = false;
+  std::size_t changes = 0;
+  for (const std::string& text : texts) {
+    const NumberStatus status = parse_number(text).status;
+    numbers = numbers || status == NumberStatus::ok;
+    changes += &text != &texts.front() && text != *(&text - 1) ? 1 : 0;
+    if (status != NumberStatus::text) continue;
+    if (first == nullptr) first = &text;
+    if (like_number == nullptr && text.find_first_of("0123456789") < 2) like_number = &text;
+  }
+  if (first == nullptr || changes == 0) return "";
+  const std::string& text = like_number != nullptr ? *like_number : *first;
+  constexpr std::size_t longest = 30;
+  const MarkShown mark = like_number != nullptr ? mark_shown(text) : MarkShown::none;
+  const bool comma = mark == MarkShown::comma || mark == MarkShown::either_comma;
+  std::string hint;
+  if (comma || mark == MarkShown::either_point)
+    hint = fmt::format(": other numbers have a decimal {} (data.decimal)", comma ? "point" : "comma");
+  else if (numbers)
+    hint = ", although other values are (data.na lists words for missing values)";
+  else if (2 * changes > texts.size() && 10 * std::set(texts.begin(), texts.end()).size() < texts.size())
+    hint = changing_text;
+  return fmt::format("\"{}\" is not a number{}", printable_name(text.substr(0, longest)), hint);
 }
 
 }  // namespace modebank::app

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace modebank::app {
 
@@ -27,6 +29,8 @@ bool names_run(std::string_view name);
 /// Whether the name is that of nanoseconds beside a column of seconds.
 bool names_nanoseconds(std::string_view name);
 
+/// The words of a name without one of these: the first that the name contains. Empty if it contains none.
+std::string words_without(std::span<const char* const> list, std::string_view name);
 /// For the name of a set point, the words of the quantity: " level cm " for level_setpoint_cm. Empty for other names.
 std::string words_of_measured(std::string_view name);
 
@@ -45,5 +49,10 @@ bool names_position(std::string_view name, Axis axis);
 /// the reverse holds (V, %, Nm).
 bool unit_of_measured(std::string_view unit);
 bool unit_of_acting(std::string_view unit);
+
+/// The value that makes a column text, with the key that helps. It is the first value that begins like a number, or the
+/// first value if there is none. Empty if all values are equal.
+std::string why_no_numbers(const std::vector<std::string>& texts);
+inline constexpr std::string_view changing_text = ", and it changes from row to row";  ///< end of such a line
 
 }  // namespace modebank::app
