@@ -1,6 +1,8 @@
+#include <fmt/format.h>
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "app/chain/stages.hpp"
@@ -8,7 +10,6 @@
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
 #include "app/cli/new_data.hpp"
-#include "app/cli/predict_text.hpp"
 #include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/free_run_check.hpp"
@@ -16,6 +17,7 @@
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"
+#include "io/files/csv_field.hpp"
 #include "io/files/output_file.hpp"
 #include "io/files/read_file.hpp"
 #include "io/files/replace_file.hpp"
@@ -24,6 +26,60 @@
 
 namespace modebank::app {
 namespace {
+
+using nlohmann::json;
+
+Index predicted_samples(const std::vector<FreeRun>& predicted) {
+  Index samples = 0;
+  for (const FreeRun& run : predicted) samples += (run.mode.array() >= 0).count();
+  return samples;
+}
+
+/// One line per sample that has a prediction. For each state, the columns are the prediction, its standard deviation
+/// and its band.
+std::string predicted_csv(const Recording& recording, const std::vector<FreeRun>& predicted) {
+  fmt::memory_buffer out;
+  auto to = std::back_inserter(out);
+  fmt::format_to(to, "run,time");
+  for (const Channel& s : recording.states)
+    for (const char* what : {"_predicted", "_sd", "_lower", "_upper"})
+      fmt::format_to(to, ",{}", csv_field(s.name + what));
+  fmt::format_to(to, ",mode\n");
+  for (std::size_t r = 0; r < predicted.size(); ++r) {
+    const FreeRun& run = predicted[r];
+    for (Index k = 0; k < run.mode.size(); ++k) {
+      if (run.mode(k) < 0) continue;
+      fmt::format_to(to, "{},{}", csv_field(recording.runs[r].run), recording.runs[r].time_s(k));
+      for (Index i = 0; i < run.mean.rows(); ++i)
+        fmt::format_to(to, ",{},{},{},{}", run.mean(i, k), run.deviation(i, k), run.lower(i, k), run.upper(i, k));
+      fmt::format_to(to, ",{}\n", run.mode(k));
+    }
+  }
+  return fmt::to_string(out);
+}
+
+/// The same values for each run, as one array per column.
+json predicted_json(const Recording& recording, const std::vector<FreeRun>& predicted) {
+  json runs = json::array();
+  for (std::size_t r = 0; r < predicted.size(); ++r) {
+    const FreeRun& run = predicted[r];
+    json object{{"run", recording.runs[r].run}, {"time_s", json::array()}, {"mode", json::array()}};
+    for (Index k = 0; k < run.mode.size(); ++k) {
+      if (run.mode(k) < 0) continue;
+      object["time_s"].push_back(recording.runs[r].time_s(k));
+      object["mode"].push_back(run.mode(k));
+      for (Index i = 0; i < run.mean.rows(); ++i) {
+        json& state = object["states"][recording.states[static_cast<std::size_t>(i)].name];
+        state["predicted"].push_back(run.mean(i, k));
+        state["sd"].push_back(run.deviation(i, k));
+        state["lower"].push_back(run.lower(i, k));
+        state["upper"].push_back(run.upper(i, k));
+      }
+    }
+    runs.push_back(std::move(object));
+  }
+  return runs;
+}
 
 double period_of(const OpenArchive& archive, const Config& config) {
   return load_bank(archive, tracked_bank(config)).dt_s;
@@ -87,7 +143,7 @@ int run_predict(const CommandLine& line) {
   const std::vector<FreeRun> predicted = predict_all(archive, config, data.recording);
   for (const std::string& remark : remarks("bank", data.recording.runs, predicted)) spdlog::warn("{}", remark);
   if (predicted_samples(predicted) == 0) throw DataError("no sample could be predicted");
-  nlohmann::json result;
+  json result;
   if (!line.output.empty()) {
     replace_file(final_target(line.output), {predicted_csv(data.recording, predicted)});
     result["written"] = {line.output};

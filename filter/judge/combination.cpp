@@ -9,7 +9,6 @@
 #include "modebank/filter/forecast_weights.hpp"
 
 namespace modebank {
-
 namespace {
 
 using Eigen::Index;

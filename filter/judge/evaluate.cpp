@@ -10,7 +10,6 @@
 #include "modebank/judge/evaluate.hpp"
 
 namespace modebank {
-
 namespace {
 
 using Eigen::Index;

@@ -1,4 +1,4 @@
-/* The functions of filter.h: filter/step/equations in C, function by function. tests/app/export/c_filter_test.cpp
+/* The functions of filter.h: filter/step's equations in C, function by function. tests/app/export/c_filter_test.cpp
  * compares the two. Global names begin with "modebank", which the prefix of NAME.c replaces. So static names must not
  * end in _MODES, _STATES, _INPUTS, _MEASUREMENTS, _filter, _estimate or _step. */
 #include "filter.h"

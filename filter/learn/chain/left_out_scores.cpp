@@ -40,23 +40,20 @@ Learning learned_on(const Learning& learned, const Recording& training, const Ba
   Learning anew;
   anew.bank = bank;
   anew.one_motion = one_motion;
-  const auto global_of = [&](const LinearStructure& structure) { return fit_global(training, structure); };
   if (inputs.lags.armax) anew.baseline = learn_armax(training, *inputs.lags.armax, inputs.bank.measurement_variance);
   if (!anew.baseline && learned.baseline) {
     anew.baseline = learned.baseline;
     const LinearStructure& structure = anew.baseline->structure;
-    anew.baseline->modes.front().model = unpack(structure, global_of(structure).theta);
+    anew.baseline->modes.front().model = unpack(structure, fit_global(training, structure).theta);
   }
-  if (learned.noise_only && inputs.lags.armax && learned.noise_only->noise_factor.empty()) {
-    anew.noise_only = noise_levels_of(*anew.baseline, training);
-  } else if (learned.noise_only) {
+  if (learned.noise_only) {
     const LinearStructure& structure = learned.noise_only->structure;
     const NoiseFactor factor =
         learned.noise_only->noise_factor.empty() ? NoiseFactor() : fit_noise_factor(training, structure);
-    anew.noise_only = learn_noise_only(training, structure, anew.baseline->R, factor);
+    anew.noise_only = noise_only_beside(*anew.baseline, inputs.lags.armax.has_value(), training, structure, factor);
   }
   if (learned.drifting)
-    anew.drifting = relearn_drifting(*learned.drifting, training, global_of(learned.drifting->structure));
+    anew.drifting = relearn_drifting(*learned.drifting, training, fit_global(training, learned.drifting->structure));
   if (learned.nonlinear) anew.nonlinear = relearn_nonlinear(learned, training, inputs);
   return anew;
 }

@@ -170,9 +170,8 @@ CompetitorsPart learn_competitors(const StageData& data, const WindowFits& windo
   CompetitorsPart learned;
   learned.baseline = single_filter(recording, linear, inputs, data.tell);
   const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, data.tell);
-  learned.noise_only = inputs.lags.armax && factor.empty()
-                           ? noise_levels_of(*learned.baseline, recording)
-                           : learn_noise_only(recording, linear.structure, learned.baseline->R, factor);
+  learned.noise_only =
+      noise_only_beside(*learned.baseline, inputs.lags.armax.has_value(), recording, linear.structure, factor);
   if (inputs.all) learned.nonlinear = nonlinear(recording, linear.structure, inputs, !factor.empty(), data.tell);
   return learned;
 }

@@ -36,9 +36,11 @@ Baseline learn_baseline(const Recording& recording, const GlobalModel& global, c
 Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
                       const NoiseFactor& factor = {});
 
-/// The same competitor with theta, C and R of a single filter whose R is known beside Q: eight levels of its Q, from a
-/// quarter to 32 times. (Residuals of exact states would count R twice.)
-Bank noise_levels_of(const Bank& single, const Recording& recording);
+/// The same competitor beside a baseline. If that is the linear stage's, whose R is known beside Q, and without a
+/// factor: its theta, C and R with eight levels of its Q, from a quarter to 32 times. (Residuals of exact states would
+/// count R twice.)
+Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
+                       const LinearStructure& structure, const NoiseFactor& factor);
 
 /// The competitor with one motion, learned like the bank. Expectation-maximisation with one theta shared by all modes
 /// starts from `most_levels` noise scales and fewer, down to one. Its own cross-validation chooses among them

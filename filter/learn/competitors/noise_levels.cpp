@@ -109,14 +109,22 @@ Bank beside_rounding(Bank bank, const Recording& recording) {
 
 }  // namespace
 
-Bank noise_levels_of(const Bank& single, const Recording& recording) {
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
+                      const NoiseFactor& factor) {
+  Bank bank = with_noise_scales(recording, structure, R, noise_only_levels, factor);
+  return bank.is_quantised() ? beside_rounding(std::move(bank), recording) : bank;
+}
+
+Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
+                       const LinearStructure& structure, const NoiseFactor& factor) {
+  if (!of_linear_stage || !factor.empty()) return learn_noise_only(recording, structure, baseline.R, factor);
   constexpr double lowest = 0.25, step = 2.0, least_share_of_R = 0.01;
-  Bank bank = single;
-  const Index n = single.structure.states;
-  Mode mode = single.modes.front();
+  Bank bank = baseline;
+  const Index n = baseline.structure.states;
+  Mode mode = baseline.modes.front();
   mode.response = {};
   mode.weight = 1.0 / static_cast<double>(noise_only_levels);
-  const Eigen::VectorXd Q = single.noise_variance().cwiseMax(least_share_of_R * single.R.diagonal());
+  const Eigen::VectorXd Q = baseline.noise_variance().cwiseMax(least_share_of_R * baseline.R.diagonal());
   bank.modes.clear();
   for (Index j = 0; j < noise_only_levels; ++j) {
     mode.Q.diagonal().head(n) = lowest * std::pow(step, static_cast<double>(j)) * Q;
@@ -124,12 +132,6 @@ Bank noise_levels_of(const Bank& single, const Recording& recording) {
   }
   choose_stay(bank, recording);
   return bank;
-}
-
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                      const NoiseFactor& factor) {
-  Bank bank = with_noise_scales(recording, structure, R, noise_only_levels, factor);
-  return bank.is_quantised() ? beside_rounding(std::move(bank), recording) : bank;
 }
 
 namespace {

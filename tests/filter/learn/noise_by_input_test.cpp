@@ -13,6 +13,7 @@
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/left_out/folds.hpp"
+#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/switching/switching_regression.hpp"
 #include "filter/step/likelihood_gradient.hpp"
 #include "ident/base/linalg.hpp"
@@ -99,9 +100,8 @@ TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
     ASSERT_FALSE(bank.noise_factor.empty());
     const VectorXd rows =
         predictive_log_densities(gather_training_transitions(recording, s, bank.noise_factor), switching_model(bank));
-    double filtered = 0.0;
-    for (const Trajectory& run : recording.runs) filtered += log_likelihood(bank, run, {});
-    EXPECT_NEAR(filtered, rows.sum(), 1e-5 * std::abs(rows.sum())) << lags << " lags";
+    EXPECT_NEAR(training_log_likelihood(bank, recording, {}), rows.sum(), 1e-5 * std::abs(rows.sum()))
+        << lags << " lags";
   }
 }
 
@@ -219,8 +219,7 @@ TEST(FindNoiseFactor, DoesNotDependOnUnits) {
                   b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
 }
 
-/// Q is computed from rows divided by their factor, and R is negligible. Runs that judge a fit did not learn its
-/// factor.
+/// Q is of rows divided by their factor, R is negligible, and runs that judge a fit did not teach its factor.
 TEST(LearnRefinedBank, HasTheFactorOfItsOwnTrainingRuns) {
   const Recording recording = runs_of(follows_input, 9, 4, 250);
   WindowFits fits = test::windows_of(recording, 20, 10);
@@ -236,7 +235,9 @@ TEST(LearnRefinedBank, HasTheFactorOfItsOwnTrainingRuns) {
   for (std::size_t s = 0; s < splits.size(); ++s)
     EXPECT_EQ(refined.of_splits[s].noise_factor.weights, fit_noise_factor(splits[s].training, fits.structure).weights);
   options.em.folds = 1;  // no run is left out: two scores that are NaN accept nothing
-  EXPECT_TRUE(learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank.noise_factor.empty());
+  const Bank without = learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank;
+  EXPECT_TRUE(without.noise_factor.empty());
+  EXPECT_GT(training_log_likelihood(refined.bank, recording, {}), training_log_likelihood(without, recording, {}));
 }
 
 }  // namespace

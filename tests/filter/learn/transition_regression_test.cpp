@@ -51,8 +51,7 @@ TEST(TransitionRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   const Recording recording = state_dependent_runs(soft, 2, 150, 1);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingRegression model = true_model(soft);
-  double expected = 0.0;
-  for (const Trajectory& run : recording.runs) expected += log_likelihood(bank_of(recording, t, model), run, {});
+  const double expected = training_log_likelihood(bank_of(recording, t, model), recording, {});
   EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a lower bound on probabilities
 }
 
