@@ -145,7 +145,6 @@ std::vector<std::string> left_channel_doubts(const Archive& archive, const Confi
   std::erase_if(left, [](const ChannelLeft& channel) { return channel.points == 0; });
   if (!row || left.empty()) return {};
   const ArmaxStructure structure = searched_structure(archive, *row);
-  std::stable_sort(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.points > b.points; });
   std::vector<std::pair<double, std::string>> found;
   for (std::size_t c = 0; c < std::min(most_tried, left.size()); ++c) {
     Config with = config;

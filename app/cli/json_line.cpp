@@ -24,10 +24,8 @@ std::string without_bare_nan(std::string_view line) {
       k += word;
       continue;
     }
-    if (quoted && line[k] == '\\' && k + 1 < line.size())
-      result += line[k++];  // the next character is escaped
-    else if (line[k] == '"')
-      quoted = !quoted;
+    if (line[k] == '"') quoted = !quoted;
+    if (quoted && line[k] == '\\' && k + 1 < line.size()) result += line[k++];  // the next character is escaped
     result += line[k++];
   }
   return result;

@@ -37,49 +37,47 @@
 namespace modebank::app {
 namespace {
 
+Stage last_stage(const std::string& until) {
+  if (until == "windows") return Stage::windows;
+  return until == "mixture" ? Stage::mixture : until == "bank" ? Stage::bank : Stage::bank_scores;
+}
+
 /// Throws if the output would replace another result: that of other data, of a bank from another file, or of more
 /// stages. This is checked before any fit, as soon as the hash of the data is known.
-void check_replaces_same_result(const std::string& output, const std::string& data_hash, const std::string& bank,
-                                Stage last) {
+void check_replaces_same_result(const ArchiveConfig& archive, const std::string& data_hash, Stage last) {
   std::error_code error;
-  if (!std::filesystem::exists(output, error)) return;
-  std::string other, other_bank;
-  bool has_more = false;
+  if (!std::filesystem::exists(archive.output, error)) return;
+  std::string other;
   try {
-    const OpenArchive opened(output);
-    other = load_data_hash(opened);
-    other_bank = resolved_values(load_configuration(opened))["archive.bank"];
+    const OpenArchive opened(archive.output);
+    const std::string hash = load_data_hash(opened), bank = resolved_values(load_configuration(opened))["archive.bank"];
     const nlohmann::json members = inspect(opened, "/")["members"];
-    has_more = (last < Stage::bank && members.contains("bank")) ||
-               (last < Stage::bank_scores && members.contains("evaluation"));
+    if (hash != data_hash)
+      other = fmt::format("of other data (data_hash {}, this run's is {})", hash, data_hash);
+    else if (bank != archive.bank || (last < Stage::bank && members.contains("bank")) ||
+             (last < Stage::bank_scores && members.contains("evaluation")))
+      other = bank.empty() ? "a learned bank" : "of the bank of " + bank;
   } catch (const std::exception& reason) {
     throw DataError(
         fmt::format("archive.output: {} exists and is not replaced, because it cannot be read: {}; name another file, "
                     "or add --force",
-                    output, reason.what()));
+                    archive.output, reason.what()));
   }
-  if (other != data_hash)
-    throw DataError(
-        fmt::format("archive.output: {} was made from other data (data_hash {}, this run's is {}) and is not replaced; "
-                    "name another file, or add --force",
-                    output, other, data_hash));
-  if (other_bank != bank || has_more)
-    throw DataError(
-        fmt::format("archive.output: {} holds another result ({}) and is not replaced; name another file, or add "
-                    "--force",
-                    output, other_bank.empty() ? "a learned bank" : "the bank of " + other_bank));
+  if (!other.empty())
+    throw DataError(fmt::format(
+        "archive.output: {} holds another result, {}, and is not replaced; name another file, or add --force",
+        archive.output, other));
 }
 
 /// Prints a chain's messages to the log.
 class Log : public Adviser {
  public:
-  /// `output` is checked as soon as the data are read. If `output` is empty, any file may be replaced.
-  Log(std::string output, std::string bank, Stage last)
-      : output_(std::move(output)), bank_(std::move(bank)), last_(last) {}
+  /// The output is checked as soon as the data are read.
+  Log(const CommandLine& line, const ArchiveConfig& archive) : line_(line), archive_(archive) {}
 
   void done(Stage stage, const Archive& archive) const override {
-    if (stage == Stage::data && !output_.empty())
-      check_replaces_same_result(output_, archive.provenance.data_hash, bank_, last_);
+    if (stage == Stage::data && !line_.force)
+      check_replaces_same_result(archive_, archive.provenance.data_hash, last_stage(line_.until));
     Adviser::done(stage, archive);
   }
   void tell(Level level, const std::string& line) const override {
@@ -88,8 +86,8 @@ class Log : public Adviser {
   }
 
  private:
-  std::string output_, bank_;
-  Stage last_;
+  const CommandLine& line_;
+  const ArchiveConfig& archive_;
 };
 
 std::string archive_line(const Config& config) { return fmt::format("\narchive   {}\n", config.archive.output); }
@@ -158,15 +156,10 @@ void refuse_learning_options(const CommandLine& line, const Config& config) {
           fmt::format("--{}: with archive.bank nothing is learned; the bank is that of {}", key, config.archive.bank));
 }
 
-Stage last_stage(const std::string& until) {
-  if (until == "windows") return Stage::windows;
-  return until == "mixture" ? Stage::mixture : until == "bank" ? Stage::bank : Stage::bank_scores;
-}
-
 /// Runs the stages and writes the archive.
 Result execute(const CommandLine& line, const Config& config, StageSource& source) {
   const Stage last = last_stage(line.until);
-  const Log log(line.force ? "" : config.archive.output, config.archive.bank, last);
+  const Log log(line, config.archive);
   Chain chain(source, log);
   const ChainOptions options = chain_options(config);
   const Execution execution{resolved_text(config), make_provenance(config_hash(config), line.typed)};

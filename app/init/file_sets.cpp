@@ -24,13 +24,11 @@ std::size_t whole_words(const std::vector<std::string>& names, std::size_t commo
 }
 
 std::size_t common_start(const std::vector<std::string>& names) {
-  std::size_t common = names.front().size();
-  for (const std::string& name : names)
-    common = static_cast<std::size_t>(
-        std::mismatch(name.begin(), name.begin() + static_cast<std::ptrdiff_t>(std::min(common, name.size())),
-                      names.front().begin())
-            .first -
-        name.begin());
+  std::size_t common = 0;
+  const auto shared = [&](const std::string& name) {
+    return name.substr(0, common + 1) == names.front().substr(0, common + 1);
+  };
+  while (common < names.front().size() && std::ranges::all_of(names, shared)) ++common;
   return whole_words(names, common);
 }
 

@@ -10,7 +10,6 @@
 #include "app/init/unreachable_commands.hpp"
 #include "app/init/words.hpp"
 #include "ident/base/printable.hpp"
-#include "io/arrays/array_reader.hpp"
 #include "io/import/expression.hpp"
 #include "modebank/base/error.hpp"
 
@@ -31,12 +30,12 @@ struct Candidate {
 
 bool same_table(const ChannelPlace& a, const ChannelPlace& b) { return a.file == b.file && a.table == b.table; }
 
-/// The name of the vector of which an instrument measures this axis: gyro_ for gyro_z. Other names stay.
+/// The name of the vector of which an instrument measures this axis: gyro_* for gyro_z. Empty for other names.
 std::string vector_of(const std::string& name) {
   for (const Axis axis : {Axis::x, Axis::y, Axis::z})
     if (names_angular_rate(name, axis) || names_acceleration(name, axis) || names_position(name, axis))
-      return name.substr(0, name.size() - 1);
-  return name;
+      return name.substr(0, name.size() - 1) + "*";
+  return "";
 }
 
 /// Adds the hints that do not come from names. A channel whose value is held while other channels of its table move is
@@ -119,9 +118,8 @@ void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Gue
   std::vector<std::string> names;
   for (const Candidate& c : all) {
     const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
-    if (is_state || !same_table(c.place, guess.states.front()) || c.score.state > 0 ||
-        vector_of(c.channel->name) != c.channel->name || !words_of_measured(c.channel->name).empty())
-      continue;
+    const bool other = !vector_of(c.channel->name).empty() || !words_of_measured(c.channel->name).empty();
+    if (is_state || other || !same_table(c.place, guess.states.front()) || c.score.state > 0) continue;
     if ((!by_place && beside > few && !c.is_held()) || guess.inputs.size() == most_inputs) continue;
     guess.inputs.push_back(c.place);
     names.push_back(c.channel->name);
@@ -154,101 +152,89 @@ void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
     guess.inputs.push_back(input->place);
 }
 
-/// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up.
+/// If the gyro lies on its side, replaces the rate about z by the rate about the axis that points up. Else an axis that
+/// hardly moves beside another one of its vector is no state: that one takes its place.
 void turn_upright(const std::vector<SurveyedFile>& files, Guess& guess) {
-  for (ChannelPlace& state : guess.states) {
-    const SurveyedTable& table = files[state.file].tables[state.table];
-    if (!names_angular_rate(table.channels[state.channel].name, Axis::z)) continue;
-    guess.mounting = find_mounting(files, state);
-    if (!guess.mounting) continue;
-    for (std::size_t c = 0; c < table.channels.size(); ++c)
-      if (table.channels[c].name == guess.mounting->up_rate) state.channel = c;
-    return;
-  }
-}
-
-/// An axis that hardly moves beside another one of its vector is no state: that one takes its place.
-void leave_resting_axes(const std::vector<SurveyedFile>& files, Guess& guess) {
   constexpr double hardly = 0.02;
   for (ChannelPlace& state : guess.states) {
     const std::vector<SurveyedChannel>& channels = files[state.file].tables[state.table].channels;
+    const std::string name = channels[state.channel].name, vector = vector_of(name);
+    if (!guess.mounting && names_angular_rate(name, Axis::z)) guess.mounting = find_mounting(files, state);
     for (std::size_t c = 0; c < channels.size(); ++c) {
       const SurveyedChannel &rests = channels[state.channel], &moves = channels[c];
-      const std::string of = vector_of(rests.name);  // x and y alone may be of different kinds
-      if (of.empty() || of != vector_of(moves.name) || rests.check.sd >= hardly * moves.check.sd) continue;
-      guess.reasons.push_back(
-          fmt::format("{} hardly moves beside {}, which is taken (data.state)", rests.name, moves.name));
+      const bool is_sister = vector.size() > 1 && vector_of(moves.name) == vector;  // x and y may be of other kinds
+      if (!guess.mounting && is_sister && rests.check.sd < hardly * moves.check.sd)
+        guess.reasons.push_back(
+            fmt::format("{} hardly moves beside {}, which is taken (data.state)", rests.name, moves.name));
+      else if (!guess.mounting || moves.name != guess.mounting->up_rate)
+        continue;
       state.channel = c;
     }
+    if (guess.mounting) break;
   }
   guess.states.erase(std::unique(guess.states.begin(), guess.states.end()), guess.states.end());  // a sister may be one
 }
 
-// Lines of Python that write files of one table. clang-format leaves raw strings alone.
-constexpr auto from_groups = R"(import h5py, pandas as pd
-for k, g in h5py.File('{}')['{}'].items():
-    c = []
-    g.visititems(lambda n, d: c.append(pd.DataFrame(d[()]).add_prefix(n + '_')) if getattr(d, 'ndim', 0) in (1, 2) else None)
-    pd.concat(c, axis=1).to_csv(f'run_{{k}}.csv', index=False))";
-constexpr auto from_structs = R"(import scipy.io as s
-for k, v in enumerate(s.loadmat('{}', simplify_cells=True)['{}']): s.savemat(f'run_{{k}}.mat', v))";
-constexpr auto from_vectors = R"(import pandas as pd; d = pd.read_csv('{}')
-for c in ['{}']: d = d.join(d.pop(c).str.strip('[]() ').str.split('[, ]+', expand=True).add_prefix(c + '_'))
-d.to_csv('flat.csv', index=False))";
-constexpr auto from_pairs = R"(import pandas as pd; d = pd.read_csv('{}')
-i = [d.columns.get_loc(c) for c in ['{}']] + [d.shape[1]]
-for a, b in zip(i, i[1:]): d.iloc[:, a:b].dropna().rename(columns={{d.columns[a]: 'time'}}).to_csv(f'table_{{a}}.csv', index=False))";
-constexpr auto from_long = R"(import pandas as pd
-pd.pivot_table(pd.read_csv('{}'), **dict(zip(['index', 'columns', 'values'], ['{}']))).to_csv('wide.csv'))";
-
-/// Throws with lines of Python, which get the file and the names.
-[[noreturn]] void refuse(const std::string& file, const std::vector<std::string>& names, const std::string& why,
-                         const char* python) {
-  throw DataError(fmt::format("{}: {} {}:\npython3 -c \"{}\"", file, fmt::join(names, ", "), why,
-                              fmt::format(fmt::runtime(python), file, fmt::join(names, "', '"))));
-}
-
-/// A group per recording (demo_3), or a struct per recording (log[3]). Instruments of one robot have numbers, too.
-void refuse_one_of_many(const SurveyedFile& file, const SurveyedTable& of) {
-  const std::size_t last = of.name.find_last_of("0123456789"), first = of.name.find_last_not_of("0123456789", last);
-  const std::string word = of.name.substr(0, first + 1), rest = of.name.substr(last + 1);
-  const bool structs = word.ends_with('[');
-  const auto alike = std::ranges::count_if(file.tables, [&](const SurveyedTable& other) {
-    return other.name.starts_with(word) && other.name.ends_with(rest) && other.channels.size() == of.channels.size();
-  });
-  if (!of.type.empty() || alike < 2 || !(structs || names_run(word))) return;
-  const std::size_t end = word.find_last_of(structs ? "[" : ".");
-  refuse(file.path.string(), {end == std::string::npos ? "/" : word.substr(0, end)},
-         fmt::format("holds {} recordings of the same columns, such as {}; make a file of each", alike, of.name),
-         is_hdf5(file.path) ? from_groups : from_structs);
-}
-
-/// If the input's robot has a topic like the state's, it is another robot.
-void refuse_other_robot(const SurveyedFile& file, const std::string& state, const std::string& input) {
-  const std::size_t robot = state.find('/', 1);
-  const std::string twin = robot < state.size() ? input.substr(0, input.find('/', 1)) + state.substr(robot) : state;
-  if (twin != state && std::ranges::count(file.tables, twin, &SurveyedTable::name) > 0)
-    throw DataError(fmt::format("{}: {} and {} are of two robots, as {} is there, too: state data.state and data.input",
-                                file.path.string(), state, input, twin));
-}
+// Refusals with lines of Python that write files of one table. clang-format leaves raw strings alone.
+constexpr auto of_groups = R"py({0}: {1} is one of several recordings; a file each: python3 -c "import h5py, pandas as p
+for k, g in h5py.File('{0}')['/{2}'.replace('.', '/')].items():
+    s = []; g.visit(s.append); a = [(n, g[n][()]) for n in s if getattr(g[n], 'ndim', 0) in (1, 2)]
+    p.concat([p.DataFrame(v).add_prefix(n + '_') for n, v in a], axis=1).to_csv(f'run_{{k}}.csv', index=False)")py";
+constexpr auto of_structs = R"py({0}: {1} is one of several recordings; a file each: python3 -c "import scipy.io as s
+for k, v in enumerate(s.loadmat('{0}', simplify_cells=True)['{2}']): s.savemat(f'run_{{k}}.mat', v)")py";
+constexpr auto of_vectors =
+    R"py({0}: '{1}' hold vectors: python3 -c "import pandas; d = pandas.read_csv('{0}')
+for c in ['{1}']: d = d.join(d.pop(c).str.strip('[]() ').str.split('[, ]+', expand=True).add_prefix(c + '_'))
+d.to_csv('flat.csv', index=False)")py";
+constexpr auto of_pairs = R"py({0}: '{1}' are times of different signals; a file each: python3 -c "import pandas
+d = pandas.read_csv('{0}'); c = d.columns; i = sorted(map(c.get_loc, ['{1}'])) + [len(c)]
+for a, b in zip(i, i[1:]): d.iloc[:, a:b].dropna().to_csv(f't{{a}}.csv', header=['time', *c[a + 1:b]], index=0)")py";
+constexpr auto of_names = R"py({0}: {3} holds the signals that {2} names; as columns: python3 -c "import pandas
+pandas.pivot_table(pandas.read_csv('{0}'), index='{1}', columns='{2}', values='{3}').to_csv('wide.csv')")py";
 
 /// Refuses a table whose rows or cells hold several things.
 void refuse_mixed_rows(const std::string& file, const SurveyedTable& table) {
-  std::vector<std::string> vectors, numbers, clocks = table.time, names = table.time;
+  std::vector<std::string> vectors, numbers, names, clocks = table.time;
   for (const SurveyedChannel& channel : table.channels) {
-    if (channel.why_text.starts_with("\"[")) vectors.push_back(channel.name);
+    if (channel.why_text.find_first_of("[(") == 1) vectors.push_back(channel.name);
     if (channel.moves() && !channel.counts && !names_time(channel.name)) numbers.push_back(channel.name);
     if (channel.why_text.ends_with(changing_text) && !names_time(channel.name)) names.push_back(channel.name);
     const bool clock = words_of_name(channel.name).starts_with(" time ") && channel.check.missing > 0;
     if (clock && std::ranges::count(clocks, channel.name) == 0) clocks.push_back(channel.name);
   }
   if (!vectors.empty() && vectors.size() >= numbers.size())
-    refuse(file, vectors, "hold vectors in their cells; make columns of them", from_vectors);
+    throw DataError(fmt::format(of_vectors, file, fmt::join(vectors, "', '")));
   if (clocks.size() > std::max<std::size_t>(table.time.size(), 1))
-    refuse(file, clocks, "are the times of different signals; make a file of each", from_pairs);
-  if (table.time.size() != 1 || names.size() != 2 || numbers.size() != 1) return;
-  refuse(file, {names[0], names[1], numbers[0]}, "hold several signals, one in each row; make columns of them",
-         from_long);
+    throw DataError(fmt::format(of_pairs, file, fmt::join(clocks, "', '")));
+  if (table.time.size() == 1 && names.size() == 1 && numbers.size() == 1)
+    throw DataError(fmt::format(of_names, file, table.time[0], names[0], numbers[0]));
+}
+
+/// Refuses what does not belong together.
+void refuse_mixed(const std::vector<SurveyedFile>& files, const Guess& guess) {
+  const SurveyedFile& file = files[guess.states.front().file];
+  const SurveyedTable& table = file.tables[guess.states.front().table];
+  const std::string path = file.path.string(), state = table.name;
+  // A group per recording (demo_3), or a struct per recording (log[3]). Instruments of one robot have numbers, too.
+  constexpr auto digits = "0123456789";
+  const std::size_t last = state.find_last_of(digits), first = state.find_last_not_of(digits, last);
+  const std::string word = state.substr(0, first + 1), own = state.substr(0, last + 1);
+  const auto is_other = [&, columns = table.channels.size()](const SurveyedTable& of) {
+    return of.name.starts_with(word) && !of.name.starts_with(own) && of.channels.size() == columns;
+  };
+  if (table.type.empty() && (word.ends_with('[') || names_run(word)) && std::ranges::any_of(file.tables, is_other))
+    throw DataError(word.ends_with('[') ? fmt::format(of_structs, path, state, word.substr(0, word.size() - 1))
+                                        : fmt::format(of_groups, path, state, word.substr(0, word.rfind('.') + 1)));
+  // If an input's robot has a topic like the state's, it is another robot.
+  const auto robot_of = [](const std::string& topic) { return topic.substr(0, topic.find('/', 1)); };
+  for (const ChannelPlace& place : guess.inputs) {
+    const std::string& input = files[place.file].tables[place.table].name;
+    const std::string twin = robot_of(input) + state.substr(robot_of(state).size());
+    if (twin != state && twin != input && std::ranges::count(file.tables, twin, &SurveyedTable::name) > 0)
+      throw DataError(fmt::format("{}: {} and {} are of two robots, as {} is there: state data.state and data.input",
+                                  path, state, input, twin));
+  }
+  refuse_mixed_rows(path, table);
 }
 
 /// Whether the name is that of a measured speed or rate, and not of a command.
@@ -298,8 +284,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
   guess_states(all, guess);
   const bool by_place = guess.states.empty();
   if (by_place) {
-    guess.reasons.emplace_back(
-        "no name indicates the state (data.state); the last channel without a hint of an input is taken");
+    guess.reasons.emplace_back("no name indicates the state (data.state); the last channel without a hint is taken");
     guess_state_by_place(all, guess);
   }
   guess_inputs(all, guess);
@@ -309,21 +294,13 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
     guess_inputs_by_place(all, by_place, guess);
   if (guess.inputs.empty())
     guess.reasons.emplace_back(
-        "no channel looks like a command; without inputs modes differ only in the motion of the state itself "
-        "(data.input)");
+        "no channel looks like a command (data.input); modes differ only in the motion of the state itself");
   else if (!by_place && is_measured_motion(files, guess.inputs.front()))
     guess.reasons.emplace_back(
-        "no command is recorded: measured motion is used instead, so the model describes how one follows the other "
-        "(data.input)");
+        "no command is recorded: measured motion is used instead (data.input); models tell how one follows the other");
   replace_unreachable_commands(files, guess);
   turn_upright(files, guess);
-  if (!guess.mounting) leave_resting_axes(files, guess);
-  const SurveyedFile& file = files[guess.states.front().file];
-  const SurveyedTable& table = file.tables[guess.states.front().table];
-  refuse_one_of_many(file, table);
-  refuse_mixed_rows(file.path.string(), table);
-  if (!guess.inputs.empty() && guess.inputs.front().file == guess.states.front().file)
-    refuse_other_robot(file, table.name, file.tables[guess.inputs.front().table].name);
+  refuse_mixed(files, guess);
   return guess;
 }
 
@@ -347,21 +324,19 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
         if (!channel.moves()) continue;
         const bool beside = same_table(place, guess.states.front());
         const bool with_inputs = !guess.inputs.empty() && same_table(place, guess.inputs.front());
-        if (channel.name.empty()) {
-          left.push_back({fmt::format("column {}", c + 1), "without a name"});
-          continue;
-        }
-        left.push_back(
-            {channel.name, score.ignored                  ? "the name indicates a time, counter, pose, place or label"
-                           : !can_be_stated(channel.name) ? "the name contains a line end or another control character"
-                           : channel.counts               ? "counts up evenly, as times and counters do"
-                           : score.input > score.state && with_inputs
-                               ? fmt::format("other channels are likelier inputs; at most {} are taken", most_inputs)
-                           : beside || with_inputs ? "measured beside the state, or without a hint of its role"
-                                                   : "in another table than the state and the inputs"});
+        left.push_back({channel.name.empty() ? fmt::format("column {}", c + 1) : channel.name,
+                        channel.name.empty()           ? "without a name"
+                        : score.ignored                ? "the name indicates a time, counter, pose, place or label"
+                        : !can_be_stated(channel.name) ? "the name contains a line end or another control character"
+                        : channel.counts               ? "counts up evenly, as times and counters do"
+                        : score.input > score.state && with_inputs
+                            ? fmt::format("other channels are likelier inputs; at most {} are taken", most_inputs)
+                        : beside || with_inputs ? "measured beside the state, or without a hint of its role"
+                                                : "in another table than the state and the inputs"});
         if (!score.ignored && can_be_stated(channel.name) && !channel.counts)
-          left.back().points = vector_of(channel.name) != channel.name ? 1 : 2 + score.input;
+          left.back().points = vector_of(channel.name).empty() ? 2 + score.input : 1;
       }
+  std::ranges::stable_sort(left, std::greater<>(), &ChannelLeft::points);
   return left;
 }
 

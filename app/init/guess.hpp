@@ -46,7 +46,7 @@ struct Guess {
 /// one cell. Such a message has the key that decides, or lines of Python that make a table.
 Guess guess_roles(const std::vector<SurveyedFile>& files);
 
-/// Moving channels that are not in `guess`, each with the reason, in the order of the files.
+/// Moving channels that are not in `guess`, each with the reason, those first that are likely to act.
 std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess);
 
 }  // namespace modebank::app

@@ -43,8 +43,8 @@ double correlation_of(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
   return scale > 0.0 ? (da * db).sum() / scale : 0.0;
 }
 
-}  // namespace
-
+/// Largest correlation of two channels from different tables, over lags from -2 s to 2 s. It uses the samples of the
+/// slower channel. 0 if the channels share fewer than ten samples.
 double correlation(const SurveyedTable& a, const VectorXd& in_a, const SurveyedTable& b, const VectorXd& in_b) {
   constexpr double longest_lag_s = 2.0;
   constexpr int lags = 40;
@@ -66,6 +66,8 @@ double correlation(const SurveyedTable& a, const VectorXd& in_a, const SurveyedT
   }
   return largest;
 }
+
+}  // namespace
 
 std::optional<Mounting> find_mounting(const std::vector<SurveyedFile>& files, const ChannelPlace& z_rate) {
   const SurveyedTable& table = files[z_rate.file].tables[z_rate.table];

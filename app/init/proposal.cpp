@@ -7,6 +7,7 @@
 #include <cctype>
 #include <cmath>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include "app/init/proposed_times.hpp"
@@ -77,44 +78,37 @@ class Proposer {
   }
   void doubt(const std::string& text) { proposal_.doubt(text); }
 
-  /// Names the channels that move and are not taken, those first that may act.
   void not_taken() {
-    constexpr std::size_t most = 6;
-    std::vector<ChannelLeft> left = proposal_.left = channels_left(surveyed_, guess_);
-    std::ranges::stable_sort(left, std::greater<>(), &ChannelLeft::points);
     std::vector<std::string> names;
-    for (const ChannelLeft& channel : left)
+    for (const ChannelLeft& channel : proposal_.left = channels_left(surveyed_, guess_))
       if (channel.points > 0) names.push_back(channel.name);
-    const std::string more = names.size() > most ? fmt::format(" and {} more", names.size() - most) : "";
-    names.resize(std::min(most, names.size()));
-    if (!names.empty())
-      doubt(fmt::format("not taken although moving: {}{} (data.input takes others)", fmt::join(names, ", "), more));
+    if (!names.empty()) doubt(fmt::format("not taken although moving: {} (data.input takes others)", first_of(names)));
   }
 
   /// Names inputs that often stand at an end of their range, where a limiter acts, and states that wrap: they jump by
   /// nearly all of 360, 2 pi or a power of two.
   void limits() {
-    constexpr double often = 0.05;
     for (const ChannelPlace& place : guess_.inputs) {
-      const Eigen::ArrayXd values = channel(place).values.array();
-      const SaturationLimits limits = saturation_limits({channel(place).values});
-      const double low = (values <= limits.low).cast<double>().mean(),
-                   high = (values >= limits.high).cast<double>().mean();
-      if (!limits.soft && std::max(low, high) > often)
-        doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples (data.input)", channel(place).name,
-                          high >= low ? channel(place).check.largest : channel(place).check.least,
-                          100.0 * std::max(low, high)));
+      const SurveyedChannel& input = channel(place);
+      const SaturationLimits limits = saturation_limits({input.values});
+      for (const auto& [end, from] :
+           {std::pair(input.check.least, limits.low), std::pair(input.check.largest, limits.high)})
+        if (const double share = ((input.values.array() - end).abs() <= std::abs(from - end)).cast<double>().mean();
+            share > 0.05 && !limits.soft)
+          doubt(fmt::format("{} stands at its limit, {:g}, in {:.0f} % of the samples (data.input)", input.name, end,
+                            100.0 * share));
     }
     for (const ChannelPlace& place : guess_.states)
-      for (const double period : std::vector<double>{360.0, 2.0 * EIGEN_PI, 256.0, 1024.0, 4096.0, 65536.0, 0x1p32}) {
-        const Eigen::VectorXd& v = channel(place).values;
-        const Eigen::ArrayXd steps = (v.tail(v.size() - 1) - v.head(v.size() - 1)).array().abs() / period;
-        const double range = channel(place).check.largest - channel(place).check.least;
-        if (range < 1.001 * period && (steps > 0.8).any() && ((steps > 0.8) || !(steps > 0.2)).all())
+      for (const double period : {360.0, 2.0 * std::numbers::pi, 256.0, 1024.0, 4096.0, 65536.0, 0x1p32}) {
+        const SurveyedChannel& state = channel(place);
+        const Eigen::Index steps = state.values.size() - 1;
+        const Eigen::ArrayXd turns = (state.values.tail(steps) - state.values.head(steps)).array().abs() / period;
+        const bool fits = state.check.largest - state.check.least < 1.001 * period;
+        if (fits && (turns > 0.8).any() && !(turns > 0.2 && turns < 0.8).any())
           doubt(
-              fmt::format("{0} jumps by {1:.9g}, and its jumps count as motion; state data.derive = turned = "
-                          "unwrap({2} * 2 * pi / {1:.9g}) and data.state = turned",
-                          channel(place).name, period, quoted_channel_name(channel(place).name)));
+              fmt::format("{0} jumps by {1:.9g}: state data.derive = turned = unwrap({2} * 2 * pi / {1:.9g}) and "
+                          "data.state = turned",
+                          state.name, period, quoted_channel_name(state.name)));
       }
   }
 
@@ -156,7 +150,7 @@ class Proposer {
     for (const FileSet* set : {&inputs, &states})
       for (const Path& file : set->files)
         if (listed && file.string().find(',') != std::string::npos)
-          doubt(fmt::format("{} is left out: a list of files cannot contain a name with a comma", typed_path(file)));
+          doubt(fmt::format("{} is left out: names in a list cannot contain commas", typed_path(file)));
     for (const FileSet& set : sets_)
       if (&set != &inputs && &set != &states)
         doubt(fmt::format("{} file{} with other columns left out: {}{}", set.files.size(),

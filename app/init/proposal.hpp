@@ -30,6 +30,9 @@ struct Proposal {
 Proposal propose(const std::vector<FileSet>& sets, const std::vector<SurveyedFile>& surveyed, const Guess& guess,
                  const std::string& config_folder);
 
+/// The first names of many, and the number of the others: "a, b, c, d, e, f and 3 more".
+std::string first_of(std::vector<std::string> names);
+
 /// The configuration as text.
 std::string configuration_text(const Proposal& proposal, const std::string& command);
 

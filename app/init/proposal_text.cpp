@@ -9,9 +9,8 @@
 namespace modebank::app {
 namespace {
 
-/// Channels with the same reason share a line. Of many names, only the first few are written.
+/// Channels with the same reason share a line.
 std::string left_text(const std::vector<ChannelLeft>& left) {
-  constexpr std::size_t named = 8;
   std::vector<std::string> reasons;
   for (const ChannelLeft& channel : left)
     if (std::find(reasons.begin(), reasons.end(), channel.reason) == reasons.end()) reasons.push_back(channel.reason);
@@ -20,15 +19,19 @@ std::string left_text(const std::vector<ChannelLeft>& left) {
     std::vector<std::string> names;
     for (const ChannelLeft& channel : left)
       if (channel.reason == reason) names.push_back(printable_name(channel.name));
-    const std::size_t more = names.size() - std::min(names.size(), named);
-    names.resize(names.size() - more);
-    text += fmt::format("# not taken, {}: {}{}\n", reason, fmt::join(names, ", "),
-                        more > 0 ? fmt::format(" and {} more", more) : "");
+    text += fmt::format("# not taken, {}: {}\n", reason, first_of(names));
   }
   return text;
 }
 
 }  // namespace
+
+std::string first_of(std::vector<std::string> names) {
+  constexpr std::size_t most = 6;
+  const std::size_t more = names.size() - std::min(names.size(), most);
+  names.resize(names.size() - more);
+  return fmt::format("{}{}", fmt::join(names, ", "), more > 0 ? fmt::format(" and {} more", more) : "");
+}
 
 std::string configuration_text(const Proposal& proposal, const std::string& command) {
   constexpr std::size_t longest = 100;

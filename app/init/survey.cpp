@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <unordered_map>
 
 #include "app/init/words.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -46,10 +47,11 @@ class TableSurvey {
     leave_out_unset(table);
     find_run(table);
     const Eigen::VectorXd stamps_s = table.time_s.array() + 1e-9 * static_cast<double>(table.origin_ns);
-    const std::vector<double> times(stamps_s.begin(), stamps_s.end());
-    const bool runs = !table.run.empty() || !clock_restarts(times, table.time_notes).empty();
+    const bool runs =
+        !table.run.empty() || !clock_restarts({stamps_s.begin(), stamps_s.end()}, table.time_notes).empty();
     table.sampling = check_sampling(one_run(table, runs));
-    for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, table);
+    const Eigen::VectorXd run = table.run.empty() ? Eigen::VectorXd() : table.find(table.run)->values;
+    for (SurveyedChannel& channel : table.channels) channel.rests = rests_in_runs(channel.values, run);
     return table;
   }
 
@@ -102,8 +104,8 @@ class TableSurvey {
       const SurveyedChannel& channel = table.channels[i];
       if (channel.type == "time" && !channel.name.ends_with("receive_time")) typed.push_back({channel.name});
       const SurveyedChannel* const next = i + 1 < table.channels.size() ? &table.channels[i + 1] : nullptr;
-      const bool pair = next != nullptr && channel.counts && channel.check.least > 9e8 && channel.check.largest < 4e9 &&
-                        next->check.largest > 5e8 && next->check.largest < 1e9;  // seconds since 1970 and nanoseconds
+      const bool pair = next != nullptr && channel.counts && channel.check.least > 9e8 && next->check.largest > 5e8 &&
+                        next->check.largest < 1e9;  // seconds since 1970 and nanoseconds
       if (!names_time(channel.name) && !pair) continue;
       if (pair || (next != nullptr && names_nanoseconds(next->name)))
         named.insert(named.begin(), {channel.name, next->name});
@@ -129,21 +131,16 @@ class TableSurvey {
   /// If a text column has times of day, the name of the text column beside it that has dates.
   static std::string date_beside(const SurveyedTable& table, std::size_t time) {
     for (const std::size_t i : {time - 1, time + 1})
-      if (i < table.channels.size() && names_date(table.channels[i].name) && table.channels[i].type == "text" &&
-          table.channels[time].type == "text")
+      if (i < table.channels.size() && words_of_name(table.channels[i].name).ends_with(" date ") &&
+          table.channels[i].type == "text" && table.channels[time].type == "text")
         return table.channels[i].name;
     return {};
   }
 
-  static Eigen::Index jumps_back(const Eigen::VectorXd& time_s) {
-    Eigen::Index count = 0;
-    for (Eigen::Index k = 1; k < time_s.size(); ++k) count += jumps_back(time_s, k);
-    return count;
-  }
-  static Eigen::Index stands_still(const Eigen::VectorXd& time_s) {
-    Eigen::Index count = 0;
-    for (Eigen::Index k = 1; k < time_s.size(); ++k) count += time_s(k) == time_s(k - 1);
-    return count;
+  /// Differences of neighbouring values.
+  static Eigen::ArrayXd steps_of(const Eigen::VectorXd& values) {
+    const Eigen::Index count = std::max<Eigen::Index>(values.size() - 1, 0);
+    return values.tail(count) - values.head(count);
   }
 
   /// Takes the first candidate with increasing times. A candidate that sometimes jumps back may contain the times of
@@ -153,7 +150,8 @@ class TableSurvey {
     for (const std::vector<std::string>& candidate : time_candidates(table)) {
       if (!take_times(table, stamps_of(candidate))) continue;
       table.time = candidate;
-      const Eigen::Index jumps = jumps_back(table.time_s), stands = stands_still(table.time_s);
+      const Eigen::ArrayXd steps = steps_of(table.time_s);
+      const Eigen::Index jumps = (steps < 0.0).count(), stands = (steps == 0.0).count();
       if (stands > table.time_s.size() / 2) {
         if (time_problem_.empty())
           time_problem_ = fmt::format("column {}: {} of {} rows repeat the time of the row before",
@@ -176,51 +174,46 @@ class TableSurvey {
     table.time_notes.clear();
     table.unset_rows = 0;
     table.origin_ns = 0;
-    const Eigen::Index rows = row_count(table);
+    Eigen::Index rows = 0;
+    for (const SurveyedChannel& channel : table.channels) rows = std::max(rows, channel.values.size());
     table.time_s = Eigen::VectorXd::LinSpaced(rows, 0.0, static_cast<double>(std::max<Eigen::Index>(rows - 1, 0)));
   }
 
   /// Whether values are a clock or a counter: they rise evenly, or in steps of one, or are seconds since 1970. A run
   /// may start again, and values may be missing.
   static bool counts_up(Eigen::VectorXd v) {
-    constexpr double fewest = 10.0;
     v.conservativeResize(std::remove_if(v.begin(), v.end(), [](double x) { return std::isnan(x); }) - v.begin());
-    if (v.size() < 2) return false;
-    if (rises_evenly(v)) return true;
-    const bool since_1970 = v(0) > 9e8 && v == v.array().round().matrix();
-    for (Eigen::Index k = 1; k < v.size(); ++k)
-      if (v(k) != v(k - 1) && v(k) != v(0) && !(v(k) == v(k - 1) + 1.0 || (since_1970 && v(k) > v(k - 1))))
-        return false;
-    return v.tail(1)(0) - v(0) >= (since_1970 ? 1.0 : fewest);
+    if (v.size() < 10 || rises_evenly(v)) return v.size() >= 10;
+    const Eigen::ArrayXd now = v.tail(v.size() - 1), step = steps_of(v);
+    const double most = v(0) > 9e8 ? HUGE_VAL : 1.0;
+    return (now == v(0) || (step == step.abs().round() && step <= most)).all() &&
+           v.tail(1)(0) - v(0) >= (most > 1.0 ? 1.0 : 10.0);
   }
 
   /// Whether the value changes only where the column that separates runs changes, or in the last row, as a mark of the
   /// end does.
-  static bool rests_in_runs(const Eigen::VectorXd& values, const SurveyedTable& table) {
-    const SurveyedChannel* const run = table.run.empty() ? nullptr : table.find(table.run);
-    for (Eigen::Index k = 1, last = 0; k + 1 < values.size(); ++k) {
-      if (std::isnan(values(k))) continue;
-      const bool changes = values(k) != values(last) && !std::isnan(values(last));
-      if (changes && (run == nullptr || !run->is_number() || run->values(k) == run->values(last))) return false;
-      last = k;
+  static bool rests_in_runs(const Eigen::VectorXd& values, const Eigen::VectorXd& run) {
+    std::unordered_map<double, double> value_of;
+    for (Eigen::Index k = 0; k + 1 < values.size(); ++k) {
+      const double of = run.size() > 0 ? run(k) : 0.0;
+      if (!std::isnan(values(k)) && value_of.try_emplace(of, values(k)).first->second != values(k)) return false;
     }
     return true;
   }
 
   /// Times increase in even steps of any size; row counters increase in whole numbers.
   static bool advances_steadily(const Eigen::VectorXd& values) {
-    return rises_evenly(values) &&
-           (values.tail(values.size() - 1).array() - values.head(values.size() - 1).array() != 1.0).any();
+    return rises_evenly(values) && (steps_of(values) != 1.0).any();
   }
 
   static bool rises_evenly(const Eigen::VectorXd& values) {
     constexpr Eigen::Index fewest = 10;
     if (values.size() < fewest || !values.allFinite()) return false;
-    Eigen::VectorXd steps = values.tail(values.size() - 1) - values.head(values.size() - 1);
-    if (!(steps.array() > 0.0).all()) return false;
+    Eigen::ArrayXd steps = steps_of(values);
+    if (!(steps > 0.0).all()) return false;
     std::sort(steps.begin(), steps.end());
     const double median = steps(steps.size() / 2);
-    const auto near = ((steps.array() > 0.5 * median) && (steps.array() < 2.0 * median)).count();
+    const auto near = (steps > 0.5 * median && steps < 2.0 * median).count();
     return 10 * near > 9 * steps.size();
   }
 
@@ -235,12 +228,6 @@ class TableSurvey {
     return true;
   }
 
-  static Eigen::Index row_count(const SurveyedTable& table) {
-    for (const SurveyedChannel& channel : table.channels)
-      if (channel.is_number()) return channel.values.size();
-    return 0;
-  }
-
   /// Returns false if there are fewer than two stamps. Stamps from before the clock was set become missing values.
   static bool take_times(SurveyedTable& table, const Table& read) {
     std::vector<std::int64_t> stamps = read.time_ns;
@@ -250,10 +237,9 @@ class TableSurvey {
     table.unset_rows = rows_before_clock_was_set(stamps);
     std::fill_n(stamps.begin(), table.unset_rows, missing_stamp);
     table.time_s.resize(std::ssize(stamps));
-    table.origin_ns = missing_stamp;
-    for (const std::int64_t stamp : stamps)
-      if (stamp != missing_stamp && (table.origin_ns == missing_stamp || stamp < table.origin_ns))
-        table.origin_ns = stamp;
+    std::vector<std::int64_t> known = stamps;
+    std::erase(known, missing_stamp);
+    table.origin_ns = known.empty() ? missing_stamp : *std::ranges::min_element(known);
     for (std::size_t k = 0; k < stamps.size(); ++k)
       table.time_s(static_cast<Eigen::Index>(k)) =
           stamps[k] == missing_stamp ? not_a_number : static_cast<double>(stamps[k] - table.origin_ns) / 1e9;
@@ -305,9 +291,7 @@ class TableSurvey {
   }
 
   static bool separates(const Eigen::VectorXd& values, const std::vector<Eigen::Index>& jumps) {
-    Eigen::Index changes = 0;
-    for (Eigen::Index k = 1; k < values.size(); ++k) changes += values(k) != values(k - 1);
-    return changes <= 2 * std::ssize(jumps) + 2 &&
+    return (steps_of(values) != 0.0).count() <= 2 * std::ssize(jumps) + 2 &&
            std::all_of(jumps.begin(), jumps.end(), [&](Eigen::Index k) { return values(k) != values(k - 1); });
   }
 

@@ -5,16 +5,10 @@
 
 #include <algorithm>
 
-#include "ident/base/characters.hpp"
+#include "ident/base/printable.hpp"
 
 namespace modebank::app {
 namespace {
-
-/// Names come from files, so control characters in them are replaced.
-std::string shown_name(std::string name) {
-  std::replace_if(name.begin(), name.end(), is_control, '?');
-  return name;
-}
 
 /// The name of an array element without its index: covariance for covariance[3].
 std::string array_of(const std::string& name) {
@@ -26,11 +20,11 @@ struct Row {
 };
 
 Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
-  const std::string name = shown_name(channel.name);
+  const std::string name = printable_name(channel.name);
   const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
   if (channel.type == "time" || is_time) return {name, "", "times"};
   if (!channel.is_number())
-    return {name, "", channel.why_text.empty() ? "text" : "text: " + shown_name(channel.why_text)};
+    return {name, "", channel.why_text.empty() ? "text" : "text: " + printable_name(channel.why_text)};
   std::string notes;
   if (channel.check.missing > 0) notes += fmt::format("  {} missing", channel.check.missing);
   if (channel.check.quantum > 0.0) notes += fmt::format("  by {:.4g}", channel.check.quantum);
@@ -53,7 +47,7 @@ std::vector<Row> rows_of(const SurveyedTable& table) {
            channels[end].is_number() && !channels[end].moves())
       ++end;
     if (end > first + 1)
-      rows.push_back({shown_name(array) + "[]", channels[first].unit, fmt::format("{} constants", end - first)});
+      rows.push_back({printable_name(array) + "[]", channels[first].unit, fmt::format("{} constants", end - first)});
     else
       rows.push_back(row_of(channels[first], table));
     first = std::max(end, first + 1);

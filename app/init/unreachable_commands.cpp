@@ -32,21 +32,12 @@ std::optional<std::size_t> counterpart(const SurveyedTable& table, const Surveye
 /// must also follow moderate commands, with a slope between 0.5 and 2.
 bool is_beyond_reach(const SurveyedChannel& command, const SurveyedChannel& measured) {
   constexpr double beyond = 1.2, least_share = 0.1, moderate = 0.5, least_slope = 0.5, largest_slope = 2.0;
-  const double reach = reach_of(measured);
-  double products = 0.0, squares = 0.0;
-  Eigen::Index above = 0, known = 0;
-  for (Eigen::Index k = 0; k < command.values.size(); ++k) {
-    const double c = command.values(k), m = measured.values(k);
-    if (!std::isfinite(c) || !std::isfinite(m)) continue;
-    ++known;
-    if (std::abs(c) > beyond * reach) ++above;
-    if (std::abs(c) > moderate * reach) continue;
-    products += c * m;
-    squares += c * c;
-  }
-  const double slope = squares > 0.0 ? products / squares : 0.0;
-  return static_cast<double>(above) > least_share * static_cast<double>(known) && slope > least_slope &&
-         slope < largest_slope;
+  const Eigen::ArrayXd c = command.values, m = measured.values, reached = c.abs() / reach_of(measured);
+  const Eigen::Array<bool, Eigen::Dynamic, 1> known = c.isFinite() && m.isFinite(),
+                                              usual = known && reached <= moderate;
+  const double slope = usual.select(c * m, 0.0).sum() / usual.select(c.square(), 0.0).sum();  // NaN without any
+  const auto share = (known && reached > beyond).cast<double>().sum() / known.cast<double>().sum();
+  return share > least_share && slope > least_slope && slope < largest_slope;
 }
 
 }  // namespace

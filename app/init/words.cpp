@@ -22,8 +22,7 @@ struct Word {
 };
 
 /// Only the word with the most points counts. Otherwise "angular velocity z" would score once for each of its words.
-template <std::size_t size>
-int best(const std::array<Word, size>& list, std::string_view words) {
+int best(std::span<const Word> list, std::string_view words) {
   int points = 0;
   for (const Word& word : list)
     if (words.find(word.words) != std::string_view::npos && word.points > points) points = word.points;
@@ -94,39 +93,35 @@ constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ", 
 constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
                                      " target ",   " reference ", " ref "};
 
-template <std::size_t size>
-bool any_of(const std::array<const char*, size>& list, std::string_view words) {
-  for (const std::string_view word : list)
-    if (words.find(word) != std::string_view::npos) return true;
-  return false;
+using Words = std::span<const char* const>;
+
+bool any_of(Words list, std::string_view words) {
+  return std::ranges::any_of(list, [&](const char* word) { return words.find(word) != std::string_view::npos; });
 }
 
-template <std::size_t size>
-bool ends_with_any(const std::array<const char*, size>& list, std::string_view words) {
-  for (const std::string_view word : list)
-    if (words.ends_with(word)) return true;
-  return false;
+bool ends_with_any(Words list, std::string_view words) {
+  return std::ranges::any_of(list, [&](const char* word) { return words.ends_with(word); });
 }
 
-template <std::size_t size>
-bool is_one_of(const std::array<std::string_view, size>& units, std::string_view unit) {
-  return std::find(units.begin(), units.end(), unit) != units.end();
+bool is_one_of(std::initializer_list<std::string_view> units, std::string_view unit) {
+  return std::ranges::find(units, unit) != units.end();
 }
 
-/// Whether the last letter of a name is the letter of this axis.
-bool has_axis(std::string_view words, Axis axis, std::string_view before) {
-  constexpr std::array letters{"x", "y", "z"};
-  const std::string joint = std::string(before) + letters[static_cast<std::size_t>(axis)] + " ";
-  return words.ends_with(joint);
+/// Whether a name ends with one of these words and the letter of this axis.
+bool has_axis(std::string_view name, Axis axis, std::initializer_list<const char*> before) {
+  const std::string words = words_of_name(name);
+  const char letter = "xyz"[static_cast<std::size_t>(axis)];
+  return std::ranges::any_of(before,
+                             [&](const char* word) { return words.ends_with(fmt::format("{}{} ", word, letter)); });
 }
 
 }  // namespace
 
 std::string words_of_name(std::string_view name) {
   name = split_unit(name).name;  // words in a unit give no points
-  constexpr std::array<std::string_view, 10> behind_slash{"V", "mV", "A", "mA", "mA.h", "Ah", "%", "C", "s", "h"};
   if (const std::size_t slash = name.rfind('/'); slash != std::string_view::npos && slash > 0)
-    if (is_one_of(behind_slash, name.substr(slash + 1))) name = name.substr(0, slash);
+    if (is_one_of({"V", "mV", "A", "mA", "mA.h", "Ah", "%", "C", "s", "h"}, name.substr(slash + 1)))
+      name = name.substr(0, slash);
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {
     const char c = name[i], before = i > 0 ? name[i - 1] : '\0';
@@ -156,10 +151,9 @@ NameScore score_name(std::string_view name, std::string_view type) {
 }
 
 bool names_time(std::string_view name) { return ends_with_any(time_names, words_of_name(name)); }
-bool names_date(std::string_view name) { return words_of_name(name).ends_with(" date "); }
 bool names_run(std::string_view name) { return ends_with_any(run_names, words_of_name(name)); }
 
-std::string words_without(std::span<const char* const> list, std::string_view name) {
+std::string words_without(Words list, std::string_view name) {
   std::string words = words_of_name(name);
   for (const std::string_view word : list)
     if (const std::size_t at = words.find(word); at != std::string::npos) return words.replace(at, word.size(), " ");
@@ -186,46 +180,24 @@ std::string usual_unit(std::string_view name) {
 }
 
 bool names_angular_rate(std::string_view name, Axis axis) {
-  const std::string words = words_of_name(name);
-  for (const char* before : {" w", " g", " gyro ", " angular velocity ", " angular ", " omega ", " gyro"})
-    if (has_axis(words, axis, before)) return true;
-  return false;
+  return has_axis(name, axis, {" w", " g", " gyro ", " angular velocity ", " angular ", " omega ", " gyro"});
 }
 
 bool names_acceleration(std::string_view name, Axis axis) {
-  const std::string words = words_of_name(name);
-  for (const char* before : {" a", " acc ", " linear acceleration ", " accel ", " acceleration "})
-    if (has_axis(words, axis, before)) return true;
-  return false;
+  return has_axis(name, axis, {" a", " acc ", " linear acceleration ", " accel ", " acceleration "});
 }
 
 bool names_position(std::string_view name, Axis axis) {
-  const std::string words = words_of_name(name);
-  for (const char* before : {"pos ", "position "})
-    if (has_axis(words, axis, before)) return true;
-  return words == std::array{" x ", " y ", " z "}[static_cast<std::size_t>(axis)];
+  return has_axis(name, axis, {"pos ", "position "}) ||
+         (words_of_name(name).size() == 3 && has_axis(name, axis, {" "}));
 }
 
 bool unit_of_measured(std::string_view unit) {
-  constexpr std::array<std::string_view, 12> units{"rad/s",
-                                                   "deg/s",
-                                                   "\xC2\xB0/s",
-                                                   "degC",
-                                                   "\xC2\xB0"
-                                                   "C",
-                                                   "K",
-                                                   "m/s^2",
-                                                   "m/s2",
-                                                   "m/s\xC2\xB2",
-                                                   "rad",
-                                                   "deg",
-                                                   "bar"};
-  return is_one_of(units, unit);
+  return is_one_of({"rad/s", "deg/s", "°/s", "degC", "°C", "K", "m/s^2", "m/s2", "m/s²", "rad", "deg", "bar"}, unit);
 }
 
 bool unit_of_acting(std::string_view unit) {
-  constexpr std::array<std::string_view, 9> units{"V", "A", "%", "N", "Nm", "N m", "N.m", "W", "rpm"};
-  return is_one_of(units, unit);
+  return is_one_of({"V", "A", "%", "N", "Nm", "N m", "N.m", "W", "rpm"}, unit);
 }
 
 std::string why_no_numbers(const std::vector<std::string>& texts) {

@@ -24,7 +24,6 @@ std::string words_of_name(std::string_view name);
 
 /// Whether the name is that of times, or of the run to which a row belongs.
 bool names_time(std::string_view name);
-bool names_date(std::string_view name);
 bool names_run(std::string_view name);
 /// Whether the name is that of nanoseconds beside a column of seconds.
 bool names_nanoseconds(std::string_view name);

@@ -110,12 +110,9 @@ class ArrayReader : public TableReader {
   std::vector<double> values_of(std::size_t column) const {
     const StoredColumn& stored = store_->columns()[column];
     std::vector<double> values(static_cast<std::size_t>(stored.rows));
-    if (!(stored.step_s > 0.0)) {
-      values = store_->numbers(column);
-      for (double& value : values) value = value == stored.fill ? not_a_number : stored.scale * value + stored.offset;
-      return values;
-    }
-    for (std::size_t k = 0; k < values.size(); ++k) values[k] = static_cast<double>(k) * stored.step_s;
+    std::iota(values.begin(), values.end(), 0.0);
+    if (!(stored.step_s > 0.0)) values = store_->numbers(column);
+    for (double& value : values) value = value == stored.fill ? not_a_number : stored.scale * value + stored.offset;
     return values;
   }
 

@@ -113,8 +113,8 @@ class MatWalk {
       return left_out.push_back(matlab_object("", path, file_));
     const bool in_rows = v.rank == 2 && v.dims[0] > 1 && v.dims[1] > 10 * v.dims[0];
     if (v.class_type == MAT_C_CELL || (is_number(v) && (v.rank > 2 || in_rows))) {
-      const std::string names = boost::replace_all_copy(path, ".", "']['");
       constexpr auto read = "import scipy.io; a = scipy.io.loadmat('{}', simplify_cells=True)['{}']";
+      const std::string names = boost::replace_all_copy(path, ".", "']['");
       return left_out.push_back(not_a_table(path, fmt::format(read, file_, names), "a"));
     }
     if (!is_number(v)) return;

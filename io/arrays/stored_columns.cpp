@@ -27,18 +27,17 @@ void add_sample_times(std::vector<StoredColumn>& columns, const std::map<std::st
     const auto commonest = std::max_element(lengths.begin(), lengths.end(),
                                             [](const auto& a, const auto& b) { return a.second < b.second; });
     StoredColumn& time = columns.emplace_back(StoredColumn{group, "time", "double", "s", commonest->first});
-    time.step_s = step_s;
+    time.scale = time.step_s = step_s;
   }
 }
 
 std::string not_a_table(const std::string& name, const std::string& read, const std::string& cells) {
-  constexpr auto line =
+  return fmt::format(
       R"py({0} is no table, but cells, rows of samples or three-dimensional, and not read: python3 -c "{1}
 import numpy as np
 for i, b in enumerate({2} if getattr(a, 'dtype', object) == object else [a]):
-  b = np.moveaxis(np.squeeze(b), np.argmax(np.squeeze(b).shape), 0)
-  np.savetxt(f'{0}_{{i}}.csv', b.reshape(len(b), -1), delimiter=',')")py";
-  return fmt::format(line, name, read, cells);
+  np.savetxt(f'{0}_{{i}}.csv', np.moveaxis(b, np.argmax(b.shape), 0).reshape(max(b.shape), -1), delimiter=',')")py",
+      name, read, cells);
 }
 
 std::string matlab_conversion(const std::string& class_name, const std::string& variable) {

@@ -23,7 +23,7 @@ struct StoredColumn {
   bool whole = false;  ///< the values are whole numbers; whole_numbers() returns them exactly
   bool text = false;
   double scale = 1.0, offset = 0.0, fill = not_a_number;  ///< a value is scale * stored + offset; fill is missing
-  double step_s = 0.0;  ///< > 0: the file has no values, and row k has the value k * step_s
+  double step_s = 0.0;  ///< > 0: the file has no values; k stands for that of row k, and scale is step_s
 
   std::string path() const { return group.empty() ? name : group + "." + name; }
 };

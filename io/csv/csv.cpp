@@ -192,7 +192,7 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   const std::size_t again = first.empty() || is_comment(first) ? text.npos : text.find(fmt::format("\n{}\n", first));
   if (head.dialect.header_rows > 0 && again < text.size())
     throw DataError(fmt::format(
-        "{0}:{1}: the header again; leave such lines out: python3 -c \"a = open('{0}').readlines(); "
+        "{0}:{1}: the header again; leave it out: python3 -c \"a = open('{0}').readlines(); "
         "open('one.csv', 'w').writelines(c for i, c in enumerate(a) if i == {2} or c != a[{2}])\"",
         file, head.dialect.first_line() + 1 + std::ranges::count(text.substr(0, again), '\n'), head.dialect.skipped));
   if (head.dialect.rewritten() || has_late_comment(text)) {
@@ -210,11 +210,6 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   pass.feed(text);
   pass.finish();
   if (sink.time_column != TableSink::none) sink.stamps.finish(file, sink.table);
-  const auto named = named_time_unit(request.time.column);
-  if (const TimeUnit read = sink.table.form.unit; named && *named != read && request.time.unit == TimeUnit::automatic)
-    sink.table.notes.push_back(
-        fmt::format("the name of {} says {}, but the units say {}, which is taken (data.time_unit)",
-                    request.time.column, in_words(*named), in_words(read)));
   if (!head.dialect.note.empty()) sink.table.notes.push_back(head.dialect.note);
   if (const std::size_t skipped = head.dialect.skipped; skipped > 0)
     sink.table.notes.push_back(fmt::format("{} line{} above the table {} skipped (data.skip_rows)", skipped,

@@ -19,19 +19,12 @@ using Fields = std::vector<std::string>;
 
 constexpr std::size_t looked_at = 30;  // number of rows to examine
 
-char delimiter_of(Separator separator) {
-  switch (separator) {
-    case Separator::semicolon:
-      return ';';
-    case Separator::tab:
-      return '\t';
-    case Separator::pipe:
-      return '|';
-    case Separator::blank:
-      return ' ';
-    default:
-      return ',';
-  }
+/// In the order of Separator; automatic stands for the comma.
+char delimiter_of(Separator separator) { return ",,;\t| "[static_cast<std::size_t>(separator)]; }
+
+std::vector<TextRecord> without_comments(std::vector<TextRecord> records) {
+  std::erase_if(records, [](const TextRecord& record) { return is_comment(record.text); });
+  return records;
 }
 
 bool is_value(const std::string& field) {
@@ -146,9 +139,7 @@ char CsvDialect::delimiter() const { return separator == Separator::blank ? blan
 std::size_t lines_above_table(std::string_view text, bool complete, const FormatOptions& options) {
   constexpr std::size_t alike = 5, names_and_units = 2;
   const std::vector<TextRecord> all = first_records(text, complete, rows_looked_at_for_table);
-  std::vector<TextRecord> records;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(records),
-               [](const TextRecord& record) { return !is_comment(record.text); });
+  const std::vector<TextRecord> records = without_comments(all);
   if (records.size() <= names_and_units) return 0;
   const std::vector<TextRecord> second_half(records.begin() + std::ssize(records) / 2, records.end());
   const Separator separator =
@@ -176,9 +167,7 @@ CsvDialect find_dialect(std::string_view text, bool complete, const FormatOption
   CsvDialect dialect;
   dialect.skipped = options.skip_automatic ? lines_above_table(text, complete, options) : options.skip_rows;
   const std::vector<TextRecord> all = first_records(without_first_lines(text, dialect.skipped), complete, looked_at);
-  std::vector<TextRecord> records;
-  std::copy_if(all.begin(), all.end(), std::back_inserter(records),
-               [](const TextRecord& record) { return !is_comment(record.text); });
+  const std::vector<TextRecord> records = without_comments(all);
   dialect.comments = records.size() < all.size();
   dialect.separator = options.separator == Separator::automatic ? find_separator(records) : options.separator;
   const std::vector<Fields> rows = split(records, dialect.separator);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "io/import/stamp_check.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -20,22 +21,12 @@ struct Interval {
 double least(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, HUGE_VAL).minCoeff(); }
 double largest(const VectorXd& time_s) { return time_s.array().isFinite().select(time_s, -HUGE_VAL).maxCoeff(); }
 
-/// Median of all positive steps.
-double period_s(const VectorXd& time_s) {
-  std::vector<double> steps;
-  for (Index k = 1; k < time_s.size(); ++k)
-    if (time_s(k) > time_s(k - 1)) steps.push_back(time_s(k) - time_s(k - 1));
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 /// Time intervals of the blocks. The gaps between blocks belong to no interval. The last interval has no end.
 std::vector<Interval> intervals(const RunStreams& run, const SplitOptions& options, double rate_hz) {
   const VectorXd &states = run.states.stream.time_s, &inputs = run.inputs.stream.time_s;
   const double first = std::max(least(states), least(inputs)), last = std::min(largest(states), largest(inputs));
-  const double gap_s = static_cast<double>(options.gap_samples) * (rate_hz > 0.0 ? 1.0 / rate_hz : period_s(inputs));
+  const double gap_s = static_cast<double>(options.gap_samples) *
+                       (rate_hz > 0.0 ? 1.0 / rate_hz : median_step({inputs.begin(), inputs.end()}));
   std::vector<double> borders{first};
   if (options.kind == SplitKind::last) borders.push_back(last - (last - first) * options.last_percent / 100.0);
   for (int i = 1; options.kind == SplitKind::blocks && i < options.blocks; ++i)

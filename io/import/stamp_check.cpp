@@ -6,6 +6,7 @@
 #include <cmath>
 #include <functional>
 
+#include "io/table/stamp_form.hpp"
 #include "io/table/table_reader.hpp"
 
 namespace modebank {
@@ -25,16 +26,6 @@ std::vector<double> spans(const std::vector<double>& times, bool from_the_end) {
   return result;
 }
 
-double median_step(const std::vector<double>& times) {
-  std::vector<double> steps;
-  for (std::size_t k = 1; k < times.size(); ++k)
-    if (times[k] > times[k - 1]) steps.push_back(times[k] - times[k - 1]);
-  if (steps.empty()) return 0.0;
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return *middle;
-}
-
 /// Name of the column of nanoseconds: header.stamp.nsecs for header.stamp.secs, stamp.nanosec for stamp.sec (ROS 2).
 std::string nanoseconds_beside(const std::string& seconds) {
   const auto ends = [&](std::string_view word) { return seconds.ends_with(word); };
@@ -44,6 +35,13 @@ std::string nanoseconds_beside(const std::string& seconds) {
 }
 
 }  // namespace
+
+double median_step(const std::vector<double>& times) {
+  std::vector<double> steps;
+  for (std::size_t k = 1; k < times.size(); ++k)
+    if (times[k] > times[k - 1]) steps.push_back(times[k] - times[k - 1]);
+  return upper_median(std::move(steps));
+}
 
 std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps_ns) {
   constexpr double far = 1e3, far_in_spans = 1e5;
@@ -120,12 +118,6 @@ std::string disorder_hint(const FileStream& source, Index k) {
   const bool an_hour = std::abs(time_s(k - 1) + step_s - time_s(k) - hour_s) <= std::min(step_s, 0.1 * hour_s);
   if (an_hour && source.origin_ns != 0)
     return " (this is an hour, as at the end of summer time; log UTC, or times with a zone such as +02:00)";
-  const double span = time_s(k - 1) - time_s(0);
-  constexpr double near_start = 0.02;
-  if (k + 1 >= fewest && span > 0.0 && std::abs(time_s(k) - time_s(0)) <= near_start * span)
-    return fmt::format(
-        " (time returns by {} s to its start; if the file has several runs, name their column in data.run)",
-        time_s(k - 1) - time_s(k));
   return {};
 }
 

@@ -9,6 +9,9 @@
 
 namespace modebank {
 
+/// Median of all positive steps; 0 without any.
+double median_step(const std::vector<double>& times);
+
 /// Index, in the order of the file, of the first stamp that differs from its neighbours by orders of magnitude. There
 /// are three cases:
 /// - later stamps are normal again;

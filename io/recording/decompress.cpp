@@ -8,6 +8,7 @@
 #include <algorithm>
 #include <cstring>
 #include <limits>
+#include <memory>
 #include <new>
 
 namespace modebank {
@@ -70,23 +71,20 @@ class Lz4Stream {
 
 class ZstdStream {
  public:
-  ZstdStream() : context_(ZSTD_createDCtx()) {
+  ZstdStream() {
     if (context_ == nullptr) throw std::bad_alloc();
   }
-  ~ZstdStream() { ZSTD_freeDCtx(context_); }
-  ZstdStream(const ZstdStream&) = delete;
-  ZstdStream& operator=(const ZstdStream&) = delete;
 
   Step step(std::string_view packed, char* to, std::size_t room) {
     ZSTD_inBuffer in{packed.data(), packed.size(), 0};
     ZSTD_outBuffer out{to, room, 0};
-    const std::size_t status = ZSTD_decompressStream(context_, &out, &in);
+    const std::size_t status = ZSTD_decompressStream(context_.get(), &out, &in);
     if (ZSTD_isError(status)) return {in.pos, out.pos, false, ZSTD_getErrorName(status)};
     return {in.pos, out.pos, status == 0, {}};
   }
 
  private:
-  ZSTD_DCtx* context_ = nullptr;
+  std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context_{ZSTD_createDCtx(), ZSTD_freeDCtx};
 };
 
 template <class Stream>

@@ -80,6 +80,7 @@ std::size_t RowCollector::add_reader(const TopicDecoder& decoder) {
       throw DataError(fmt::format("topic {} ({}) cannot be read: {}", topic_.name, topic_.type, decoder.problem));
     try {
       reader.slots.push_back(reader.messages.add(path));
+      if (path.find('{') != std::string::npos) reader.named.push_back(reader.slots.back());
     } catch (const DefinitionError&) {
       throw ConfigurationError(
           fmt::format("topic {} ({}) has no column \"{}\"", topic_.name, topic_.type, want.column));
@@ -100,13 +101,9 @@ void RowCollector::take(std::size_t reader, const RecordedMessage& message, cons
     throw DataError(fmt::format("{}:{}: topic {} ({}): the definition does not fit the message: {}", file, messages_,
                                 topic_.name, topic_.type, error.what()));
   }
-  bool named = false, found = false;  // a message without any of the requested names is another publisher's
-  for (std::size_t i = 0; i < chosen.slots.size(); ++i) {
-    if (request_.columns[i].column.find('{') == std::string::npos) continue;
-    named = true;
-    found = found || row_[chosen.slots[i]].form != Value::Form::missing;
-  }
-  if (named && !found) return;
+  const auto is_missing = [&](std::size_t slot) { return row_[slot].form == Value::Form::missing; };
+  // A message without any of the requested names is another publisher's.
+  if (!chosen.named.empty() && std::ranges::all_of(chosen.named, is_missing)) return;
   rows_.message.push_back(messages_);
   receive_ns_.push_back(message.receive_ns);
   for (std::size_t i = 0; i < chosen.slots.size(); ++i) {

@@ -27,7 +27,8 @@ class RowCollector {
  private:
   struct Reader {
     MessageReader messages;
-    std::vector<std::size_t> slots;  ///< one for each requested column
+    std::vector<std::size_t> slots;       ///< one for each requested column
+    std::vector<std::size_t> named = {};  ///< those of columns such as velocity{left}
   };
 
   void append(LogColumn& column, const LogWant& want, const Value& value, const std::string& file);

@@ -140,9 +140,7 @@ bool StampColumn::Reading::is_even(const std::vector<double>& missing) const {
   }
   if (steps.empty() || *std::min_element(steps.begin(), steps.end()) < 0.0) return steps.empty();
   const double longest = *std::max_element(steps.begin(), steps.end());
-  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return longest <= gap_steps * *middle;
+  return longest <= gap_steps * upper_median(std::move(steps));
 }
 
 std::string StampColumn::complaint(NumberStatus status, std::string_view text) const {
@@ -167,12 +165,14 @@ StampForm StampColumn::found_form(std::vector<std::string>& notes) const {
   if (!request_.second.empty()) return {Ground::stated, TimeUnit::s};
   if (request_.unit != TimeUnit::automatic) return {Ground::stated, request_.unit};
   StampForm form{Ground::stated, TimeUnit::s};
-  if (const auto stated = stated_time_unit(stated_unit_))
-    form.unit = *stated;
-  else if (const auto named = named_time_unit(request_.column))
-    form.unit = *named;
+  const auto stated = stated_time_unit(stated_unit_), named = named_time_unit(request_.column);
+  if (stated || named)
+    form.unit = stated ? *stated : *named;
   else
     form = form_of_numbers(request_.column, as_written_, whole_numbers_, notes);
+  if (stated && named && *stated != *named)
+    notes.push_back(fmt::format("the name of {} says {}, but its unit {}, which is taken (data.time_unit)",
+                                request_.column, in_words(*named), in_words(*stated)));
   if (form.unit != TimeUnit::s)
     notes.push_back(fmt::format("column {} counts {} (data.time_unit = {})", request_.column, in_words(form.unit),
                                 name_of(form.unit)));
@@ -233,8 +233,7 @@ void StampColumn::finish(std::string_view file, Table& table) {
     table.time_ns[k] = nanoseconds(k, form);
   }
   if (turns > 0.0)
-    table.notes.push_back(
-        fmt::format("{} falls by 2^32, as a counter of 32 bits does, and is counted on", request_.column));
+    table.notes.push_back(fmt::format("{} falls by 2^32, as 32-bit counters do: it is counted on", request_.column));
   if (form.unit == TimeUnit::s && request_.second.empty()) table.time_s = std::move(as_written_);
 }
 

@@ -19,13 +19,6 @@ struct Numbers {
   std::vector<double> first;
 };
 
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 Numbers first_numbers(const std::vector<double>& values) {
   std::vector<double> known, spacings;
   for (const double value : values) {
@@ -34,7 +27,7 @@ Numbers first_numbers(const std::vector<double>& values) {
     if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
     known.push_back(value);
   }
-  return {median(known), median(std::move(spacings)), known};
+  return {upper_median(known), upper_median(std::move(spacings)), known};
 }
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }
@@ -127,6 +120,13 @@ bool join_patterns(StampForm& ours, const StampForm& theirs) {
   ours.patterns = std::move(both.patterns);
   ours.alike = std::move(both.alike);
   return true;
+}
+
+double upper_median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
 }
 
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,

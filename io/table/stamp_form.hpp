@@ -30,6 +30,9 @@ struct StampForm {
   bool clock = false;                   ///< whether the stamp is a time of day, counted from midnight
 };
 
+/// The upper of two middle values for an even count; 0 if empty.
+double upper_median(std::vector<double> values);
+
 /// The format of numbers, found from their magnitude and their increments. `values`: NaN means missing. `all_whole`:
 /// whether all numbers are whole. Adds remarks for the user to `notes`.
 StampForm form_of_numbers(std::string_view column, const std::vector<double>& values, bool all_whole,

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
 #include <nlohmann/json.hpp>
-#include <sstream>
+#include <regex>
 
 #include "app/study/launch/shell.hpp"
 #include "ident/base/characters.hpp"
@@ -87,11 +87,9 @@ std::string sbatch(const SlurmRequest& request, const std::string& command) {
   const std::string reason = fs::exists(errors) ? boost::trim_copy(read_file(errors)) : "";
   std::error_code ignored;
   fs::remove(errors, ignored);
-  std::string id, word;  // sites print banners before the number, or words around it
-  for (std::istringstream words(result.out); words >> word;)
-    if (const std::string number = word.substr(0, word.find(';'));
-        !number.empty() && std::ranges::all_of(number, is_digit))
-      id = number;
+  std::string id;  // the last number: sites print banners before it, or words around it
+  static const std::regex number(R"((^|\s)(\d+)(?![^;\s]))");
+  for (std::sregex_iterator it(result.out.begin(), result.out.end(), number), end; it != end; ++it) id = (*it)[2];
   if (result.status != 0 || id.empty())
     throw DataError(fmt::format("Slurm refused the job (exit status {}): {}\n  {}", result.status,
                                 reason.empty() ? "no number of a job in: " + result.out : reason, command));
@@ -117,10 +115,8 @@ void check_request(const SlurmRequest& request) {
         "in any number of processes, then --study.stage merge");
   for (const std::string& option : request.options)
     if (option.starts_with("--array") || option.starts_with("-a") || option.find_first_of("'\"") != std::string::npos)
-      throw ConfigurationError(
-          fmt::format("study.slurm_options: {} is not taken: modebank sets --array (one task per ten runs, at most "
-                      "100), and options are cut at blanks, whatever quotes they hold",
-                      option));
+      throw ConfigurationError(fmt::format(
+          "study.slurm_options: {}: modebank sets --array, and cuts options at blanks in quotes, too", option));
   for (const fs::path& path :
        {request.program, request.config, request.folder, request.data_root, fs::current_path()}) {
     const std::string text = path.string();
