@@ -1,9 +1,9 @@
 #include "ident/lag/armax.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
+#include "ident/base/covariance.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -42,12 +42,9 @@ VectorXd nonnegative(const MatrixXd& A, const VectorXd& b) {
     if (A.cols() == 0 || !(gradient.maxCoeff(&best) > tolerance)) break;
     used.push_back(best);
     while (!used.empty()) {
-      const VectorXd z = solve_least_squares(A(Eigen::all, used), b);
-      double step = 1.0;
-      for (std::size_t i = 0; i < used.size(); ++i)
-        if (const double at = x(used[i]); z(static_cast<Index>(i)) <= 0.0)
-          step = std::min(step, at / (at - z(static_cast<Index>(i))));
-      x(used) += step * (z - x(used));
+      const VectorXd z = solve_least_squares(A(Eigen::all, used), b), at = x(used);
+      const double step = (z.array() <= 0.0).select(at.array() / (at - z).array(), 1.0).minCoeff();
+      x(used) += step * (z - at);
       if (step == 1.0) break;
       std::erase_if(used, [&](Index j) { return !(x(j) > 1e-14 * x.maxCoeff()) && ((x(j) = 0.0), true); });
     }
@@ -55,82 +52,74 @@ VectorXd nonnegative(const MatrixXd& A, const VectorXd& b) {
   return x;
 }
 
-/// Columns of the least squares: R, Q, the force of a second-order motion, Q beside the diagonal, a wandering level.
-MatrixXd shapes(const Polynomial& A, bool differences, Index K) {
-  const Index n = A.front().rows();
-  const Polynomial one{MatrixXd::Identity(n, n)};
-  const auto taken = [&](const Polynomial& M) { return differences ? times(M, -1.0) : M; };
-  std::vector<VectorXd> columns;
+/// Least squares for C(q) e = w + A(q) v, the target last, in units of the errors `sd`, so that no state's unit counts.
+/// Columns: R, Q, the force of a second-order motion, a wandering level, Q beside the diagonal.
+MatrixXd balance_of(const ArmaxFit& fit, const VectorXd& sd) {
+  const Index n = fit.theta.rows();
+  const MatrixXd one = MatrixXd::Identity(n, n), unit = sd.cwiseInverse().asDiagonal();
+  Polynomial A{one}, C{one};
+  for (Index j = 0; j < fit.order.state_lags; ++j)
+    A.push_back(-unit * fit.theta.middleCols(j * n, n) * sd.asDiagonal());
+  for (Index j = 0; j < fit.order.noise_lags; ++j) C.push_back(unit * fit.C.middleCols(j * n, n) * sd.asDiagonal());
+  const Index K = static_cast<Index>(std::max(A.size() + 1, C.size())) + 1;
+  const auto taken = [&](const Polynomial& M) { return fit.order.differences ? times(M, -1.0) : M; };
+  MatrixXd columns(K * n * n, 0);
+  const auto add = [&](const Polynomial& M, const MatrixXd& V) {
+    columns.conservativeResize(Eigen::NoChange, columns.cols() + 1);
+    columns.rightCols(1) = autocovariances(M, V, K);
+  };
   const auto add_diagonal = [&](const Polynomial& M) {
-    for (Index i = 0; i < n; ++i) columns.push_back(autocovariances(M, VectorXd::Unit(n, i).asDiagonal(), K));
+    for (Index i = 0; i < n; ++i) add(M, VectorXd::Unit(n, i).asDiagonal());
   };
   add_diagonal(taken(A));
-  add_diagonal(taken(one));
+  add_diagonal(taken({one}));
   // Force noise that is held between samples moves the position by an MA(1) with this root.
-  if (n == 1 && A.size() == 3) add_diagonal(taken(times(one, 1.0 / (2.0 + std::sqrt(3.0)))));
-  if (differences) add_diagonal(A);
+  if (n == 1 && A.size() == 3) add_diagonal(taken(times({one}, 1.0 / (2.0 + std::sqrt(3.0)))));
+  if (fit.order.differences) add_diagonal(A);
   for (Index i = 0; i < n; ++i)
     for (Index j = i + 1; j < n; ++j)
-      for (const double sign : {1.0, -1.0}) {
-        MatrixXd V = MatrixXd::Zero(n, n);
-        V(i, j) = V(j, i) = sign;
-        columns.push_back(autocovariances(taken(one), V, K));
-      }
-  MatrixXd all(columns.front().size(), std::ssize(columns));
-  for (Index j = 0; j < all.cols(); ++j) all.col(j) = columns[static_cast<std::size_t>(j)];
-  return all;
+      for (const double sign : {1.0, -1.0})
+        add(taken({one}), sign * (one.col(i) * one.row(j) + one.col(j) * one.row(i)));
+  add(C, unit * fit.S * unit);
+  return columns;
+}
+
+/// Standard errors of R, by shifts along each root of the covariance of theta and C. R may turn negative, so that the
+/// errors of an R at or near zero are those of its estimate before the bound. The other shapes are those in use.
+VectorXd errors_of_R(const ArmaxFit& fit, const VectorXd& sd, const VectorXd& x) {
+  const Index n = fit.theta.rows(), P = fit.theta.cols();
+  std::vector<Index> used;
+  for (Index j = 0; j < x.size(); ++j)
+    if (j < n || x(j) > 0.0) used.push_back(j);
+  const auto R_at = [&](const VectorXd& shift) {
+    const MatrixXd by = shift.reshaped<Eigen::RowMajor>(n, shift.size() / n);
+    ArmaxFit shifted = fit;
+    shifted.theta += by.leftCols(P);
+    shifted.C += by.rightCols(by.cols() - P);
+    const MatrixXd balance = balance_of(shifted, sd);
+    return VectorXd(solve_least_squares(balance(Eigen::all, used), balance.rightCols(1)).head(n));
+  };
+  VectorXd square = 2.0 / static_cast<double>(fit.rows) * x.head(n).cwiseAbs2();  // by that of the errors' variance
+  const MatrixXd root = covariance_root(fit.covariance);
+  for (const auto& shift : root.colwise()) square += (R_at(shift) - R_at(-shift)).cwiseAbs2() / 4.0;
+  return square.cwiseSqrt();
 }
 
 }  // namespace
 
 ArmaxNoise noises(const ArmaxFit& fit, const std::optional<VectorXd>& stated_R) {
   const Index n = fit.theta.rows();
-  const VectorXd sd = fit.S.diagonal().cwiseSqrt();  // in units of the errors, so that no state's unit counts
-  const auto scaled = [&](const MatrixXd& M) { return MatrixXd(sd.cwiseInverse().asDiagonal() * M * sd.asDiagonal()); };
-  Polynomial A{MatrixXd::Identity(n, n)}, C = A;
-  for (Index j = 0; j < fit.order.state_lags; ++j) A.push_back(-scaled(fit.theta.middleCols(j * n, n)));
-  for (const MatrixXd& c : fit.C) C.push_back(scaled(c));
-  const Index K = static_cast<Index>(std::max(A.size() + 1, C.size())) + 1;
-  const MatrixXd columns = shapes(A, fit.order.differences, K);
-  const VectorXd square = sd.array().square();
-  VectorXd target = autocovariances(C, sd.cwiseInverse().asDiagonal() * fit.S * sd.cwiseInverse().asDiagonal(), K);
-  if (stated_R) target -= columns.leftCols(n) * stated_R->cwiseQuotient(square);
-  VectorXd x(columns.cols());
-  if (stated_R)
-    x << stated_R->cwiseQuotient(square), nonnegative(columns.rightCols(columns.cols() - n), target);
-  else
-    x = nonnegative(columns, target);
-  ArmaxNoise result{x.head(n).cwiseProduct(square), x.segment(n, n).cwiseProduct(square)};
-  if (n == 1 && A.size() == 3) result.Q(0) += x(2) * square(0);
+  const VectorXd sd = fit.S.diagonal().cwiseSqrt(), square = sd.cwiseAbs2();
+  const MatrixXd balance = balance_of(fit, sd);
+  const Index held = stated_R ? n : 0, found = balance.cols() - 1 - held;
+  VectorXd x(held + found);
+  if (stated_R) x.head(n) = stated_R->cwiseQuotient(square);
+  x.tail(found) =
+      nonnegative(balance.middleCols(held, found), balance.rightCols(1) - balance.leftCols(held) * x.head(held));
+  ArmaxNoise result{x.head(n).cwiseProduct(square), x.segment(n, n).cwiseProduct(square), VectorXd::Zero(n)};
+  if (n == 1 && fit.order.state_lags == 2) result.Q(0) += x(2) * square(0);
+  if (!stated_R) result.R_error = errors_of_R(fit, sd, x).cwiseProduct(square);
   return result;
-}
-
-ArmaxFit in_levels(const ArmaxFit& fit) {
-  if (!fit.order.differences) return fit;
-  const Index n = fit.theta.rows(), na = fit.order.state_lags, nb = fit.order.input_lags, m = std::ssize(fit.delays);
-  ArmaxFit levels = fit;
-  levels.order.differences = false;
-  levels.order.intercept = false;
-  levels.order.state_lags = na + 1;
-  if (m > 0) levels.order.input_lags = nb + 1;
-  const Index noise = n * fit.order.noise_lags, from = n * (na + 1), q = fit.theta.cols() + noise;
-  // (1 - q^-1) A(q), (1 - q^-1) B(q): each row of [theta C] times M, plus an identity.
-  MatrixXd M = MatrixXd::Zero(q, from + m * (nb + 1) + noise);
-  M.topLeftCorner(n * na, n * na).setIdentity();
-  M.block(0, n, n * na, n * na) -= MatrixXd::Identity(n * na, n * na);
-  for (Index i = 0; i < m; ++i) {
-    M.block(n * na + i * nb, from + i * (nb + 1), nb, nb).setIdentity();
-    M.block(n * na + i * nb, from + i * (nb + 1) + 1, nb, nb) -= MatrixXd::Identity(nb, nb);
-  }
-  M.bottomRightCorner(noise, noise).setIdentity();
-  levels.theta = fit.theta * M.topLeftCorner(fit.theta.cols(), M.cols() - noise);
-  levels.theta.leftCols(n) += MatrixXd::Identity(n, n);
-  levels.covariance.resize(n * M.cols(), n * M.cols());
-  for (Index i = 0; i < n; ++i)
-    for (Index j = 0; j < n; ++j)
-      levels.covariance.block(i * M.cols(), j * M.cols(), M.cols(), M.cols()) =
-          M.transpose() * fit.covariance.block(i * q, j * q, q, q) * M;
-  return levels;
 }
 
 }  // namespace modebank

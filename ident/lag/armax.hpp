@@ -22,12 +22,12 @@ struct ArmaxOrder {
 /// A fit by prediction errors (Ljung 1999, section 7.2), started by Hannan & Rissanen (1982).
 struct ArmaxFit {
   ArmaxOrder order;
-  std::vector<Index> delays;       ///< m, of each input [samples]
-  Eigen::MatrixXd theta;           ///< n x P: state lags (n columns each), input lags of each input, the constant
-  std::vector<Eigen::MatrixXd> C;  ///< n x n each
-  Eigen::MatrixXd S;               ///< n x n, covariance of e
-  Eigen::MatrixXd covariance;      ///< of the entries of [theta C_1 C_2 ..], row by row
-  Index rows = 0;                  ///< number of samples predicted
+  std::vector<Index> delays;   ///< m, of each input [samples]
+  Eigen::MatrixXd theta;       ///< n x P: state lags (n columns each), input lags (m columns each), the constant
+  Eigen::MatrixXd C;           ///< n columns for each lag
+  Eigen::MatrixXd S;           ///< n x n, covariance of e
+  Eigen::MatrixXd covariance;  ///< of the entries of [theta C], row by row
+  Index rows = 0;              ///< number of samples predicted
 };
 
 struct ArmaxCandidate {
@@ -63,20 +63,17 @@ struct LinearStageOptions {
 /// Finds each input's delay, by least squares and then by the likelihood of the chosen structure: the latest within 2
 /// nats. Compares ARMAX and ARX structures in levels and in differences on the same rows of left-out runs, below four
 /// runs on stretches, under Student's t. Chooses the fewest parameters within one standard error, 0.001 nats a row, or
-/// 6 nats per state in all, whichever is largest. A model in levels with a pole near 1 that C cancels is differences in
-/// disguise and not chosen. Lags do not reach across gaps or missing samples. Outliers get
-/// Huber's weights. The result does not depend on the number of threads.
+/// 6 nats per state in all, whichever is largest. Lags do not reach across gaps or missing samples; the residuals
+/// before a stretch are unknown. Outliers get Huber's weights. The result does not depend on the number of threads.
 LinearStage find_linear_stage(const Recording& recording, const LinearStageOptions& options = {});
 
 /// Variances of the measurement noise v and of the process noise w, n each.
 struct ArmaxNoise {
   Eigen::VectorXd R, Q;
+  Eigen::VectorXd R_error;  ///< standard errors, zero where R is stated
 };
 
 /// R and Q by non-negative least squares on the autocovariances of C(q) e = w + A(q) v. A stated R is held.
 ArmaxNoise noises(const ArmaxFit& fit, const std::optional<Eigen::VectorXd>& stated_R = std::nullopt);
-
-/// The same model in levels: differences get a pole at 1, one more lag and no constant.
-ArmaxFit in_levels(const ArmaxFit& fit);
 
 }  // namespace modebank

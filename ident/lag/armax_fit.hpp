@@ -16,6 +16,7 @@ struct ArmaxStretch {
 struct ArmaxData {
   std::vector<ArmaxStretch> stretches;
   bool differences = false;
+  std::vector<Index> delays = {};            ///< m, found for these data
   Index first = 0;                           ///< first sample of a stretch that is predicted
   std::vector<Index> begin = {}, rows = {};  ///< first row of each stretch in all rows, and number of rows
   Index count = 0;                           ///< number of all rows
@@ -24,8 +25,8 @@ struct ArmaxData {
   Index inputs() const { return stretches.front().u.rows(); }
 };
 
-/// Sum of z z' over samples from `first` on. z has state lags, lags of each input, the constant, lagged residuals, and
-/// last the n targets.
+/// Sum of z z' over samples from `first` on. z has state lags, input lags, the constant, lagged residuals, and last the
+/// n targets.
 Eigen::MatrixXd armax_gram(const ArmaxData& data, const ArmaxOrder& order, const std::vector<Index>& delays,
                            Index first);
 
@@ -35,12 +36,15 @@ Eigen::MatrixXd solve_scaled(const Eigen::MatrixXd& xx, const Eigen::MatrixXd& x
 /// Sets residuals to those of a long ARX, which serve as noise before any model is known.
 void add_residuals(ArmaxData& data, const std::vector<Index>& least_delay);
 
-/// Roots of z^p = M_1 z^(p-1) + .. + M_p.
-Eigen::VectorXcd roots_of(const Eigen::MatrixXd& blocks);
+/// Of stretches whose fold was left out.
+struct LeftOut {
+  Eigen::MatrixXd errors;      ///< n x rows
+  Eigen::VectorXd start_nats;  ///< what residuals unknown before the start of each stretch take from the likelihood
+};
 
-/// At most 15 Gauss-Newton steps with halving. `left_out`, if not null, becomes the errors (n x rows) of parts that are
-/// left out, by one further step from the fit without the sums of their fold.
+/// At most 15 Gauss-Newton steps with halving. `left_out`, if not null, is made by one further step from the fit
+/// without the sums of the fold.
 ArmaxFit fit_armax(const ArmaxData& data, const ArmaxOrder& order, const std::vector<Index>& delays,
-                   Eigen::MatrixXd* left_out = nullptr);
+                   LeftOut* left_out = nullptr);
 
 }  // namespace modebank

@@ -3,8 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <map>
-#include <numeric>
+#include <utility>
 
 #include "ident/base/clustered_error.hpp"
 #include "ident/base/interruption.hpp"
@@ -22,7 +21,7 @@ using Delays = std::vector<Index>;
 constexpr Index longest_delay = 30, least_first = 39, least_rows = 60, fewest_parts = 5, fewest_runs = 4;
 constexpr double delay_nats = 2.0, acting_nats = 6.0;
 
-constexpr std::array<ArmaxOrder, 12> orders{{{false, 1, 1, 1},
+constexpr std::array<ArmaxOrder, 11> orders{{{false, 1, 1, 1},
                                              {false, 1, 2, 1},
                                              {false, 2, 2, 2},
                                              {false, 2, 3, 2},
@@ -30,10 +29,9 @@ constexpr std::array<ArmaxOrder, 12> orders{{{false, 1, 1, 1},
                                              {true, 1, 2, 2},
                                              {true, 2, 2, 3},
                                              {true, 2, 3, 3},
-                                             {false, 1, 1, 0},
-                                             {false, 1, 2, 0},
                                              {false, 4, 4, 0},
-                                             {false, 8, 8, 0}}};
+                                             {false, 8, 8, 0},
+                                             {false, 12, 8, 0}}};
 
 /// Whether sample k follows sample k - 1: no gap, no missing value.
 bool follows(const Trajectory& run, Index k, double period_s) {
@@ -80,7 +78,7 @@ std::vector<Segment> cut(const std::vector<Segment>& segments, Index first) {
 
 /// Levels or differences of the same samples. The first sample of each segment has no difference.
 ArmaxData data_of(const std::vector<Segment>& segments, Index first, bool differences) {
-  ArmaxData data{{}, differences, first};
+  ArmaxData data{{}, differences, {}, first};
   for (const Segment& segment : segments) {
     const Index N = segment.count - 1;
     const auto form = [&](const MatrixXd& of) {
@@ -138,8 +136,8 @@ class DelayScan {
     std::vector<Index> used;
     for (Index j = 0; j < inputs; ++j) used.push_back(j);
     for (std::size_t i = 0; i < delays.size(); ++i)
-      for (Index j = 0; j < order_.input_lags; ++j)
-        used.push_back(inputs + static_cast<Index>(i) * all_.input_lags + delays[i] - least_[i] + j);
+      for (Index j = delays[i] - least_[i], end = j + order_.input_lags; j < end; ++j)
+        used.push_back(inputs + j * data_.inputs() + static_cast<Index>(i));
     for (Index j = inputs + data_.inputs() * all_.input_lags; j < targets; ++j) used.push_back(j);
     const auto z = Eigen::seqN(targets, n);
     const MatrixXd rest = gram_(z, z) - gram_(z, used) * solve_scaled(gram_(used, used), gram_(used, z));
@@ -148,89 +146,60 @@ class DelayScan {
   }
 };
 
-/// The latest delays within 2 nats, one input at a time.
-Delays scanned(const ArmaxData& data, const Delays& least) {
-  const ArmaxOrder order{data.differences, 2, 2, data.differences ? 3 : 2};
+/// Delays of a structure, one input at a time: the latest within 2 nats. With a fit, the likelihood decides among the
+/// delay of the fit and the best by least squares.
+Delays found_delays(const ArmaxData& data, const Delays& least, const ArmaxFit* fit) {
+  constexpr int proposals = 3;
+  const ArmaxOrder order = fit ? fit->order : ArmaxOrder{data.differences, 2, 2, data.differences ? 3 : 2};
   const DelayScan scan(data, order, least);
-  Delays delays = least;
-  for (int round = 0; round < 3; ++round)
-    for (std::size_t i = 0; i < delays.size(); ++i) {
-      const VectorXd half = scan.profile(delays, i);
-      for (Index k = 0; k < half.size(); ++k)
-        if (half(k) < half.minCoeff() + delay_nats) delays[i] = least[i] + k;
-    }
-  return delays;
-}
-
-/// The latest delays within 2 nats by the likelihood of a structure. The scan proposes a few for each input.
-Delays polished(const ArmaxData& data, const ArmaxFit& fit, const Delays& least) {
-  constexpr std::size_t proposals = 3;
-  const DelayScan scan(data, fit.order, least);
-  Delays delays = fit.delays;
+  Delays delays = fit ? fit->delays : least;
   for (std::size_t i = 0; i < delays.size(); ++i) {
-    const VectorXd half = scan.profile(delays, i);
-    Delays near(static_cast<std::size_t>(half.size()));
-    std::iota(near.begin(), near.end(), least[i]);
-    std::stable_sort(near.begin(), near.end(),
-                     [&](Index a, Index b) { return half(a - least[i]) < half(b - least[i]); });
-    near.resize(std::min<std::size_t>(proposals, half.array().isFinite().count()));
-    near.push_back(delays[i]);
-    std::map<Index, double> value;
-    for (const Index delay : near)
-      if (delays[i] = delay; !value.contains(delay))
-        value[delay] = 0.5 * static_cast<double>(data.count) * log_determinant(fit_armax(data, fit.order, delays).S);
-    const double best = std::ranges::min_element(value, {}, &std::pair<const Index, double>::second)->second;
-    for (const auto& [delay, half_deviance] : value)
-      if (half_deviance < best + delay_nats) delays[i] = delay;
+    VectorXd half = scan.profile(delays, i), exact = VectorXd::Constant(half.size(), HUGE_VAL);
+    Index at = delays[i] - least[i];
+    for (int proposal = 0; fit && proposal <= proposals && (proposal == 0 || half(at) < HUGE_VAL); ++proposal) {
+      delays[i] = least[i] + at;
+      exact(at) = 0.5 * static_cast<double>(data.count) * log_determinant(fit_armax(data, order, delays).S);
+      half(at) = HUGE_VAL;
+      half.minCoeff(&at);
+    }
+    const VectorXd& decides = fit ? exact : half;
+    for (Index k = 0; k < half.size(); ++k)
+      if (decides(k) < decides.minCoeff() + delay_nats) delays[i] = least[i] + k;
   }
   return delays;
 }
 
-ArmaxCandidate candidate(const ArmaxData& data, const ArmaxOrder& order, const Delays& delays, Index parts) {
+ArmaxCandidate candidate(const ArmaxData& data, const ArmaxOrder& order, Index parts) {
   const Index n = data.states();
-  MatrixXd e;
-  ArmaxCandidate result{fit_armax(data, order, delays, &e), VectorXd::Zero(parts), 0.0, 0};
+  LeftOut left;
+  ArmaxCandidate result{fit_armax(data, order, data.delays, &left), VectorXd::Zero(parts), 0.0, 0};
+  const MatrixXd& e = left.errors;
   result.size = n * (result.fit.theta.cols() + order.noise_lags * n);
   const MatrixXd S = e * e.transpose() / static_cast<double>(data.count), z = Cholesky(S).whiten(e);
   VectorXd density = VectorXd::Constant(data.count, -0.5 * log_determinant(S));
   for (Index i = 0; i < n; ++i) density += fitted_student_log_density(z.row(i).transpose(), 1e-3);
   for (std::size_t r = 0; r < data.stretches.size(); ++r)
-    result.left_out(data.stretches[r].part) += density.segment(data.begin[r], data.rows[r]).sum();
+    result.left_out(data.stretches[r].part) +=
+        density.segment(data.begin[r], data.rows[r]).sum() - left.start_nats(static_cast<Index>(r));
   if (!result.left_out.allFinite()) result.left_out.setConstant(-1e100);  // errors that grew without bound
   return result;
 }
 
-/// In levels: a pole above .985 beside a root of C within .03 of it.
-bool cancels(const ArmaxFit& fit) {
-  const Index n = fit.theta.rows();
-  if (fit.order.differences || fit.C.empty() || fit.order.state_lags < 2) return false;
-  MatrixXd C(n, n * std::ssize(fit.C));
-  for (Index j = 0; j < std::ssize(fit.C); ++j) C.middleCols(j * n, n) = -fit.C[static_cast<std::size_t>(j)];
-  const Eigen::VectorXcd poles = roots_of(fit.theta.leftCols(n * fit.order.state_lags)), zeros = roots_of(C);
-  return std::any_of(poles.begin(), poles.end(), [&](const std::complex<double>& pole) {
-    return std::abs(pole) > 0.985 && (zeros.array() - pole).abs().minCoeff() < 0.03;
-  });
-}
-
+/// Sets `lost` of the candidates, and chooses the smallest within the limits.
 void choose(LinearStage& stage, Index states) {
-  constexpr double least_per_row = 0.001, least_per_state = 6.0, most_for_uncancelled = 40.0;
+  constexpr double least_per_row = 0.001, least_per_state = 6.0;
   std::vector<ArmaxCandidate>& all = stage.candidates;
   const auto best = std::ranges::max_element(all, {}, [](const ArmaxCandidate& a) { return a.left_out.sum(); });
-  std::vector<std::size_t> good, plain, near;
+  const double rows = stage.rows.sum();
+  stage.chosen = static_cast<std::size_t>(best - all.begin());
   for (std::size_t i = 0; i < all.size(); ++i) {
     const VectorXd lost = best->left_out - all[i].left_out;
     all[i].lost = lost.sum();
-    const double error = clustered_error(lost, stage.rows) * stage.rows.sum();
-    const bool within = all[i].lost <= std::max({error, least_per_row * stage.rows.sum(),
-                                                 least_per_state * static_cast<double>(states)});
-    const bool sound = !cancels(all[i].fit);
-    if (within) good.push_back(i);
-    if (within && sound) plain.push_back(i);
-    if (sound && all[i].lost <= most_for_uncancelled) near.push_back(i);
+    const double error = clustered_error(lost, stage.rows) * rows;
+    if (all[i].lost > std::max({error, least_per_row * rows, least_per_state * static_cast<double>(states)})) continue;
+    const auto key = [&](std::size_t c) { return std::pair(all[c].size, all[c].lost); };
+    if (key(i) < key(stage.chosen)) stage.chosen = i;
   }
-  const std::vector<std::size_t>& among = !plain.empty() ? plain : !near.empty() ? near : good;
-  stage.chosen =
-      *std::ranges::min_element(among, {}, [&](std::size_t i) { return std::pair(all[i].size, all[i].lost); });
 }
 
 /// The constant for y and u that are not centred, and the covariance with it.
@@ -238,9 +207,7 @@ void uncentre(ArmaxFit& fit, const VectorXd& mean_y, const VectorXd& mean_u) {
   if (!fit.order.has_constant()) return;
   const Index n = fit.theta.rows(), last = fit.theta.cols() - 1, q = last + 1 + n * fit.order.noise_lags;
   VectorXd mean(last);
-  for (Index j = 0; j < fit.order.state_lags; ++j) mean.segment(j * n, n) = mean_y;
-  for (Index j = fit.order.state_lags * n; j < last; ++j)
-    mean(j) = mean_u((j - fit.order.state_lags * n) / fit.order.input_lags);
+  mean << mean_y.replicate(fit.order.state_lags, 1), mean_u.replicate(fit.order.input_lags, 1);
   fit.theta.col(last) += mean_y - fit.theta.leftCols(last) * mean;
   MatrixXd& V = fit.covariance;
   for (Index i = 0; i < n; ++i) V.row(i * q + last) -= mean.transpose() * V.middleRows(i * q, last);
@@ -261,20 +228,16 @@ std::vector<ArmaxOrder> orders_of(const LinearStageOptions& options, const Armax
   return result;
 }
 
-/// Levels and differences of the same samples, with the delays found in each.
-struct Forms {
-  std::array<ArmaxData, 2> data;
-  std::array<Delays, 2> delays = {};
-};
+using Forms = std::array<ArmaxData, 2>;  // levels and differences of the same samples
 
 /// Fits all structures and chooses one.
 void compare(LinearStage& stage, const Forms& forms, const std::vector<ArmaxOrder>& structures) {
   stage.candidates.resize(structures.size());
   tbb::parallel_for(std::size_t{0}, structures.size(), [&](std::size_t i) {
-    const std::size_t form = structures[i].differences ? 1 : 0;
-    stage.candidates[i] = candidate(forms.data[form], structures[i], forms.delays[form], stage.rows.size());
+    const ArmaxData& data = forms[structures[i].differences ? 1 : 0];
+    stage.candidates[i] = candidate(data, structures[i], stage.rows.size());
   });
-  choose(stage, forms.data[0].states());
+  choose(stage, forms[0].states());
 }
 
 }  // namespace
@@ -291,27 +254,26 @@ LinearStage find_linear_stage(const Recording& recording, const LinearStageOptio
   if (segments.size() < 2) return stage;
   Forms forms{{data_of(segments, first, false), data_of(segments, first, true)}};
   const bool centred = options.only ? options.only->order.intercept : options.intercept;
-  const auto mean_of = [&](auto signal) { return centred ? centre(forms.data[0], signal) : VectorXd(); };
+  const auto mean_of = [&](auto signal) { return centred ? centre(forms[0], signal) : VectorXd(); };
   const VectorXd mean_y = mean_of(&ArmaxStretch::y), mean_u = mean_of(&ArmaxStretch::u);
-  const std::vector<ArmaxOrder> structures = orders_of(options, forms.data[0]);
+  const std::vector<ArmaxOrder> structures = orders_of(options, forms[0]);
   VectorXd moved = VectorXd::Zero(recording.state_count());
-  for (const ArmaxStretch& stretch : forms.data[1].stretches) moved += stretch.y.cwiseAbs().rowwise().sum();
+  for (const ArmaxStretch& stretch : forms[1].stretches) moved += stretch.y.cwiseAbs().rowwise().sum();
   if (structures.empty() || !(moved.minCoeff() > 0.0)) return stage;
   stage.rows.setZero(segments.back().part + 1);
   for (std::size_t r = 0; r < segments.size(); ++r)
-    stage.rows(segments[r].part) += static_cast<double>(forms.data[0].rows[r]);
-  for (std::size_t form = 0; form < 2; ++form) {
-    add_residuals(forms.data[form], least);
-    forms.delays[form] = options.only ? options.only->delays : scanned(forms.data[form], least);
+    stage.rows(segments[r].part) += static_cast<double>(forms[0].rows[r]);
+  for (ArmaxData& data : forms) {
+    add_residuals(data, least);
+    data.delays = options.only ? options.only->delays : found_delays(data, least, nullptr);
   }
   compare(stage, forms, structures);
-  for (int round = 0; round < 2 && !options.only; ++round) {
+  if (!options.only) {
     interruption_point();
-    const ArmaxFit& fit = stage.fit();
-    const Delays found = polished(forms.data[fit.order.differences ? 1 : 0], fit, least);
-    if (found == fit.delays) break;
-    forms.delays = {found, found};
-    compare(stage, forms, structures);
+    const ArmaxFit fit = stage.fit();
+    const Delays found = found_delays(forms[fit.order.differences ? 1 : 0], least, &fit);
+    for (ArmaxData& data : forms) data.delays = found;
+    if (found != fit.delays) compare(stage, forms, structures);
   }
   for (ArmaxCandidate& one : stage.candidates) uncentre(one.fit, mean_y, mean_u);
   return stage;

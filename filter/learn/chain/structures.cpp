@@ -218,10 +218,9 @@ void tell_answer(const ArmaxFit& fit, const Recording& recording, const Tell& te
 }
 
 /// The linear stage (ident/lag/armax.hpp) on recordings whose structure is searched as a whole. Empty where it does not
-/// apply, and where more than one lag of an ARX explain the runs best: then lags are searched by least squares.
+/// apply, and where the lags of an ARX explain the runs best: then they are searched by least squares.
 std::optional<FoundStructure> linear_structure_of(const Recording& recording, const StructureInputs& inputs,
                                                   const Tell& tell) {
-  constexpr Index few_lags = 2;
   const SearchedLags& searched = inputs.searched;
   const bool acted_on = recording.input_count() > 0;
   if (!searched.state || (acted_on && !(searched.input && searched.delay)) || is_repeated(recording)) return {};
@@ -231,7 +230,7 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   const LinearStage stage = find_linear_stage(recording, options);
   if (stage.candidates.empty()) return {};
   const ArmaxFit& fit = stage.fit();
-  if (fit.order.noise_lags == 0 && fit.order.state_lags > few_lags) return {};
+  if (fit.order.noise_lags == 0) return {};
   const double rounding = std::numeric_limits<double>::epsilon() * recording.runs.front().states().norm();
   if (!leaves_enough(recording, fit, searched.most_samples) || fit.S.trace() < rounding * rounding) return {};
   tell_answer(fit, recording, tell);

@@ -8,6 +8,7 @@
 #include <random>
 #include <vector>
 
+#include "filter/learn/chain/stages.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
@@ -186,6 +187,21 @@ TEST(Baseline, RecoversTwoStates) {
   EXPECT_EQ(fit.bank.R(0, 1), 0.0);
   EXPECT_GE(fit.log_likelihood, likelihood_at(fit.bank, recording, truth.modes[0].Q, truth.R));
   EXPECT_LT(standardised_errors(fit, recording, truth).cwiseAbs().maxCoeff(), 3.0);
+}
+
+TEST(Baseline, OfDifferencesHasAPoleAtOneAndTheirAnswer) {
+  Recording recording = simulated(single_filter(-0.3, 0.04, 0.01), 1, 30);
+  const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
+  ArmaxFit fit{{true, 1, 2, 1}, {3}, Eigen::RowVector3d(0.9, 0.05, 0.01), -0.5 * one, one, {}, 1000};
+  fit.covariance = Eigen::Matrix4d::Identity();
+  const Bank bank = bank_of(recording, fit, {});
+  const Eigen::Vector<double, 5> levels(0.9, -0.9, 0.05, -0.04, -0.01);  // less 1 for the increment
+  EXPECT_TRUE(near(bank.theta(0), levels, 1e-15)) << "A steady input moves nothing";
+  EXPECT_NEAR(bank.modes[0].standard_error(3), std::sqrt(2.0), 1e-15);
+  EXPECT_NEAR(bank.modes[0].response.value.gain(0, 0), 0.6, 1e-9);
+  recording.inputs.clear();
+  fit = {{true, 1, 0, 1}, {}, 0.9 * one, -0.5 * one, one, Eigen::Matrix2d::Identity(), 1000};
+  EXPECT_TRUE(near(bank_of(recording, fit, {}).theta(0), levels.head(2), 1e-15));
 }
 
 TEST(Baseline, ConstantDataEndFinite) {

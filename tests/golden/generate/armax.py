@@ -12,47 +12,38 @@ import sys
 import numpy as np
 from scipy import optimize
 
-FIRST, LONG_FIRST, LONG_STATE, LONG_INPUT = 39, 33, 20, 30
+FIRST = 39
 
 
-def simulate(rng, A, B, delays, ambient, q, r, samples):
+def simulate(rng, A, B, delays, ambient, wander, q, r, samples):
     n, m = B.shape
     u = np.round(np.repeat(rng.uniform(0, 50, (m, samples // 10)), 10, 1), 1)
-    x, y = np.zeros((n, samples)), np.zeros((n, samples))
+    x, y = np.zeros((n, samples)), ambient + wander * rng.standard_normal((n, samples)).cumsum(1)
     for k in range(samples):
         if k:
             acting = [u[i, max(0, k - d)] for i, d in enumerate(delays)]
             x[:, k] = A @ x[:, k - 1] + B @ acting + q * rng.standard_normal(n)
-        y[:, k] = ambient + x[:, k] + r * rng.standard_normal(n)
+        y[:, k] += x[:, k] + r * rng.standard_normal(n)
     return {"state": np.round(y, 4).tolist(), "input": u.tolist()}
 
 
-def rows(y, u, na, nb, delays, constant, first):
+def rows(y, u, na, nb, delays, constant):
     N = y.shape[1]
-    lags = [y[:, first - j:N - j] for j in range(1, na + 1)]
-    inputs = [u[i:i + 1, first - d - j:N - d - j] for i, d in enumerate(delays) for j in range(nb)]
-    return np.vstack(lags + inputs + [np.ones((constant, N - first))])
+    lags = [y[:, FIRST - j:N - j] for j in range(1, na + 1)]
+    inputs = [u[i:i + 1, FIRST - d - j:N - d - j] for i, d in enumerate(delays) for j in range(nb)]
+    return np.vstack(lags + inputs + [np.ones((constant, N - FIRST))])
 
 
-def past_residuals(ys, us, constant):
-    """Residuals of the long ARX on the samples before FIRST."""
-    ones = [1] * us[0].shape[0]
-    X = [rows(y, u, LONG_STATE, LONG_INPUT, ones, constant, LONG_FIRST) for y, u in zip(ys, us)]
-    theta = np.linalg.lstsq(np.hstack(X).T, np.hstack([y[:, LONG_FIRST:] for y in ys]).T, rcond=None)[0].T
-    return [(y[:, LONG_FIRST:] - theta @ x)[:, :FIRST - LONG_FIRST] for x, y in zip(X, ys)]
-
-
-def prediction_errors(parameters, X, Z, past, nc):
-    n, P = Z[0].shape[0], X[0].shape[0]
-    M = parameters.reshape(n, -1)
-    joined = []
-    for x, z, before in zip(X, Z, past):
-        e = np.hstack([before, z - M[:, :P] @ x])
-        for k in range(before.shape[1], e.shape[1]):
-            for j in range(nc):
-                e[:, k] -= M[:, P + j * n:P + (j + 1) * n] @ e[:, k - 1 - j]
-        joined.append(e[:, before.shape[1]:])
-    return np.hstack(joined)
+def prediction_errors(parameters, X, Z, W):
+    """W e, n x rows of all runs. Errors before a run are unknown, so of all e that obey its equations: the least."""
+    n, P, M = len(Z[0]), len(X[0]), parameters.reshape(len(Z[0]), -1).copy()
+    size, K = M.shape[1] - P, X[0].shape[1]
+    root = abs(np.linalg.eigvals(np.vstack([-M[:, P:], np.eye(size - n, size)]))).max()
+    M[:, P:] *= min(1, .995 / root) ** (1 + np.arange(size) // n)
+    C = np.hstack([np.eye(n), M[:, P:]]).reshape(n, -1, n).swapaxes(0, 1) @ np.linalg.inv(W)
+    band = sum(np.kron(np.eye(K, K + size // n, size // n - j), c) for j, c in enumerate(C))
+    right = np.array([(z - M[:, :P] @ x).T.ravel() for x, z in zip(X, Z)]).T
+    return (band.T @ np.linalg.solve(band @ band.T, right)).T.reshape(-1, n).T
 
 
 def autocovariances(M, V, K):
@@ -81,31 +72,30 @@ def fit(runs, order, delays):
     ys, us = ([np.array(run[key]) for run in runs] for key in ("state", "input"))
     ys, us = ([np.diff(v, axis=1) if differences else v[:, 1:] for v in of] for of in (ys, us))
     n, constant = ys[0].shape[0], 1 - differences
-    past = [e[:, e.shape[1] - nc:] for e in past_residuals(ys, us, constant)]
-    X = [rows(y, u, na, nb, delays, constant, FIRST) for y, u in zip(ys, us)]
+    X = [rows(y, u, na, nb, delays, constant) for y, u in zip(ys, us)]
     Z = [y[:, FIRST:] for y in ys]
     theta = np.linalg.lstsq(np.hstack(X).T, np.hstack(Z).T, rcond=None)[0].T
-    parameters, W = np.hstack([theta, np.zeros((n, n * nc))]).ravel(), np.eye(n)
+    count = sum(z.shape[1] for z in Z)
+    parameters, W = np.hstack([theta, np.kron(np.poly([.5] * nc)[1:], np.eye(n))]).ravel(), np.eye(n)
     for _ in range(30):
-        def whitened(p):
-            return (W @ prediction_errors(p, X, Z, past, nc)).ravel()
-        found = optimize.least_squares(whitened, parameters, x_scale="jac", xtol=1e-14, ftol=1e-14, gtol=1e-14)
-        parameters, e = found.x, prediction_errors(found.x, X, Z, past, nc)
-        W = np.linalg.inv(np.linalg.cholesky(e @ e.T / e.shape[1]))
+        found = optimize.least_squares(lambda p, W=W: prediction_errors(p, X, Z, W).ravel(), parameters, x_scale="jac",
+                                       xtol=1e-14, ftol=1e-14, gtol=1e-14)
+        parameters, e = found.x, np.linalg.solve(W, prediction_errors(found.x, X, Z, W))
+        W = np.linalg.inv(np.linalg.cholesky(e @ e.T / count))
     P, M = theta.shape[1], parameters.reshape(n, -1)
-    S = e @ e.T / (e.shape[1] - M.shape[1])
+    S = e @ e.T / (count - M.shape[1])
     A = [np.eye(n)] + [-M[:, j * n:(j + 1) * n] for j in range(na)]
     C = [np.eye(n)] + [M[:, P + j * n:P + (j + 1) * n] for j in range(nc)]
     R, Q = variances(A, C, S, differences)
-    return {"order": list(map(int, order)), "theta": M[:, :P].tolist(), "C": M[:, P:].tolist(), "S": S.tolist(),
+    return {"order": order, "theta": M[:, :P].tolist(), "C": M[:, P:].tolist(), "S": S.tolist(),
             "R": R.tolist(), "Q": Q.tolist(),
             "standard_error": np.sqrt(np.diag(np.linalg.inv(found.jac.T @ found.jac))).reshape(n, -1).tolist()}
 
 
 def main():
     rng = np.random.default_rng(53)
-    one = [simulate(rng, np.array([[0.9]]), np.array([[0.06, -0.1]]), [1, 4], 20, 0.05, 0.1, 240) for _ in range(4)]
-    two = [simulate(rng, np.array([[0.9, 0.05], [-0.1, 0.8]]), np.array([[0.04], [0.1]]), [2], 5, 0.05, 0.1, 240)
+    one = [simulate(rng, [[0.9]], np.array([[0.06, -0.1]]), [1, 4], 20, 0.05, 0.05, 0.1, 240) for _ in range(4)]
+    two = [simulate(rng, [[0.9, 0.05], [-0.1, 0.8]], np.array([[0.04], [0.1]]), [2], 5, 0, 0.05, 0.1, 240)
            for _ in range(4)]
     cases = {"one": {"runs": one, "delays": [1, 4],
                      "fits": [fit(one, (0, 1, 1, 1), [1, 4]), fit(one, (1, 1, 1, 2), [1, 4])]},
