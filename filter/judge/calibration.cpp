@@ -1,6 +1,7 @@
 #include "filter/judge/calibration.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -36,7 +37,7 @@ CalibrationReason doubt_of(const BandCounts& counts, double outside, const Inter
   if (says_nothing(likely, least_outside, largest_outside) || says_nothing(close, least_close, largest_close))
     return CalibrationReason::few_samples;
   if (!within(outside, least_outside, largest_outside)) return CalibrationReason::band;
-  if (!within(mean_of(as_numbers(counts.close)), least_close, largest_close)) return CalibrationReason::close;
+  if (!within(share_of(counts.close), least_close, largest_close)) return CalibrationReason::close;
   if (!within(mean_distance(counts.nis, counts.nis_degrees) / counts.nis_degrees, least_nis, most_nis))
     return CalibrationReason::nis;
   return within(counts.correlation, -largest_correlation, largest_correlation) ? CalibrationReason::none
@@ -50,6 +51,31 @@ SeriesByRun as_numbers(const HitsByRun& hits) {
   for (const std::vector<char>& run : hits) numbers.emplace_back(run.begin(), run.end());
   return numbers;
 }
+
+void BandCounts::begin_run(const RunEvaluation& run) {
+  const auto samples = static_cast<std::size_t>(run.log_density.size());
+  const std::size_t signals = samples * static_cast<std::size_t>(run.pit.rows());
+  for (HitsByRun& hits : outside) hits.emplace_back().reserve(signals);
+  far.emplace_back().reserve(signals);
+  close.emplace_back().reserve(signals);
+  sizes.emplace_back().reserve(signals);
+  nis.begin_run(samples);
+}
+
+void BandCounts::add(const RunEvaluation& run, const RunScores& scores, Eigen::Index k) {
+  static const ScoreBands bands;
+  for (const double z : scores.z.col(k)) {
+    if (std::isnan(z)) continue;
+    const ScoreBands::Hits hits = bands.of(z);
+    for (std::size_t b = 0; b < outside.size(); ++b) outside[b].back().push_back(hits.outside[b] ? 1 : 0);
+    far.back().push_back(hits.far ? 1 : 0);
+    close.back().push_back(hits.close ? 1 : 0);
+    sizes.back().push_back(std::abs(z));
+  }
+  nis.add(run.nis(k), scored_signals(run, k));
+}
+
+double share_of(const HitsByRun& hits) { return mean_of(as_numbers(hits)); }
 
 double time_by_sizes(const SeriesByRun& sizes) {
   return cautious_time(autocorrelation_time_of_tail(sizes), sample_count(sizes));

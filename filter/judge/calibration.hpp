@@ -69,7 +69,14 @@ struct BandCounts {
   double nis_degrees = 1.0;     ///< n_y
   bool chi_square_nis = false;  ///< whether the NIS is chi-square for a correct model
   double correlation = 0.0;     ///< largest lag-1 autocorrelation of a signal's z by absolute value; 0 if unknown
+
+  /// Starts the next run, with memory for all its samples: growing series would take up to twice the memory.
+  void begin_run(const RunEvaluation& run);
+  /// Counts sample k of the run.
+  void add(const RunEvaluation& run, const RunScores& scores, Eigen::Index k);
 };
+/// Share of hits; NaN without signals.
+double share_of(const HitsByRun& hits);
 
 /// Autocorrelation time of hits, from the sizes of all signals, with a margin. NaN without signals.
 double time_by_sizes(const SeriesByRun& sizes);

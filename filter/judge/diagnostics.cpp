@@ -24,26 +24,25 @@ struct Collected {
   std::vector<Index> nees_states;                      ///< the states of the NEES
   Index samples = 0, entropy_samples = 0, failed = 0;  ///< failed: samples without a density above zero
   double usage = 0.0, entropy = 0.0, visits = 0.0, visited = 0.0;
+  double nees = 0.0, nees_degrees = 0.0;
   BandCounts counts = {};
-  SquaredDistances nees = {};
   SeriesByRun z = {};  ///< only for the whole filter: one series per run and measured signal
   std::vector<double> whiteness = {};
   Eigen::VectorXd squared_state_error = {};
   Index state_errors = 0;
-  ScoreBands bands = {};
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
-    for (HitsByRun* hits : {&counts.far, &counts.close}) hits->emplace_back();
-    for (HitsByRun& hits : counts.outside) hits.emplace_back();
-    counts.sizes.emplace_back();
-    for (SquaredDistances* distances : {&counts.nis, &nees}) distances->begin_run();
+    counts.begin_run(e);
     SeriesByRun of_run(static_cast<std::size_t>(e.pit.rows()));
-    if (mode < 0) make_room(e, of_run);
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
       add_probabilities(e, k);
       if (mode >= 0 && scores.likeliest(k) != mode) continue;
-      add_scores(e, k, scores, of_run);
+      ++samples;
+      failed += e.log_density(k) <= lowest_log_density ? 1 : 0;
+      counts.add(e, scores, k);
+      for (Index i = 0; i < e.pit.rows(); ++i)
+        if (!std::isnan(scores.z(i, k))) of_run[static_cast<std::size_t>(i)].push_back(scores.z(i, k));
       if (run.truth.size() > 0) add_truth(run, e, k);
     }
     whiteness.push_back(mode < 0 ? scores.whiteness_p : whiteness_p(of_run));
@@ -63,16 +62,6 @@ struct Collected {
   }
 
  private:
-  /// Reserves memory for all samples of a run. Without this, growing series would take up to twice the memory.
-  void make_room(const RunEvaluation& e, SeriesByRun& of_run) {
-    const auto run_samples = static_cast<std::size_t>(e.log_density.size()), all = run_samples * of_run.size();
-    for (HitsByRun* hits : {&counts.far, &counts.close}) hits->back().reserve(all);
-    for (HitsByRun& hits : counts.outside) hits.back().reserve(all);
-    counts.sizes.back().reserve(all);
-    for (SeriesByRun* series : {&counts.nis.value, &counts.nis.degrees}) series->back().reserve(run_samples);
-    for (std::vector<double>& output : of_run) output.reserve(run_samples);
-  }
-
   void add_probabilities(const RunEvaluation& e, Index k) {
     const auto mu = e.mode_probability.col(k);
     ++entropy_samples;
@@ -83,22 +72,6 @@ struct Collected {
     entropy += of_sample / std::log(static_cast<double>(mu.size()));
   }
 
-  void add_scores(const RunEvaluation& e, Index k, const RunScores& scores, SeriesByRun& of_run) {
-    ++samples;
-    failed += e.log_density(k) <= lowest_log_density ? 1 : 0;
-    for (Index i = 0; i < e.pit.rows(); ++i) {
-      if (std::isnan(e.pit(i, k))) continue;
-      const double score = scores.z(i, k);
-      const ScoreBands::Hits hits = bands.of(score);
-      for (std::size_t b = 0; b < hits.outside.size(); ++b) counts.outside[b].back().push_back(hits.outside[b] ? 1 : 0);
-      counts.far.back().push_back(hits.far ? 1 : 0);
-      counts.close.back().push_back(hits.close ? 1 : 0);
-      counts.sizes.back().push_back(std::abs(score));
-      of_run[static_cast<std::size_t>(i)].push_back(score);
-    }
-    counts.nis.add(e.nis(k), scored_signals(e, k));
-  }
-
   void add_truth(const Trajectory& run, const RunEvaluation& e, Index k) {
     const Index n = run.truth.rows(), all = e.state.rows();
     const Eigen::VectorXd error = e.state.col(k).head(n) - run.truth.col(k);
@@ -106,7 +79,8 @@ struct Collected {
     if (!nees_states.empty()) {
       const Eigen::MatrixXd P = e.covariance.col(k).reshaped(all, all)(nees_states, nees_states);
       const Eigen::VectorXd judged = error(nees_states);
-      nees.add(judged.dot(solve_semidefinite(P, judged)), judged.size());
+      nees += judged.dot(solve_semidefinite(P, judged));
+      nees_degrees += static_cast<double>(judged.size());
     }
     squared_state_error += error.cwiseAbs2();
     ++state_errors;
@@ -188,7 +162,7 @@ DiagnosticsRow make_row(const Collected& c) {
   set_share(c.counts.far, time, row.too_far, row.too_far_lower, row.too_far_upper);
   set_share(c.counts.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
   row.nis_mean = mean_distance(c.counts.nis, c.counts.nis_degrees);
-  row.nees_mean = mean_distance(c.nees, static_cast<double>(c.nees_states.size()));
+  row.nees_mean = static_cast<double>(c.nees_states.size()) * (c.nees / c.nees_degrees);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);

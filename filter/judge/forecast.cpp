@@ -24,29 +24,13 @@ class MomentForecast final : public Forecast {
   void start(const ImmFilter<N, NY>& origin) { bank_.start(origin); }
   void step(const Vector& inputs) override { bank_.step(inputs); }
 
-  Eigen::VectorXd mean() const override {
-    return of_signals([](const NormalMixture& signal) { return signal.mixture_mean(); });
-  }
-  Eigen::VectorXd standard_deviation() const override {
-    return of_signals([](const NormalMixture& signal) {
-      const auto variance = signal.deviation.array().square() + (signal.mean.array() - signal.mixture_mean()).square();
-      return std::sqrt((signal.weight.array() * variance).sum());
-    });
-  }
-  double probability(Index i, double y) const override { return bank_.signal(i).probability(y); }
-  double quantile(Index i, double p) const override { return bank_.signal(i).quantile(p, normal_quantile(p)); }
   double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override { return bank_.observe(y, error); }
   Eigen::VectorXd mode_probability() const override { return bank_.predicted_probability(); }
 
  private:
   ImmFilter<N, NY> bank_;
 
-  template <class F>
-  Eigen::VectorXd of_signals(F f) const {
-    Eigen::VectorXd result(bank_.model().C.rows());
-    for (Index i = 0; i < result.size(); ++i) result(i) = f(bank_.signal(i));
-    return result;
-  }
+  SignalMixture signal(Index i) const override { return bank_.signal(i); }
 };
 
 /// Log density of a mixture of levels whose variances are multiplied by `factor`. `whitened`, `log_weight`: of one
@@ -74,19 +58,6 @@ class RunningNoiseForecast final : public Forecast {
     if (merged_) covariance_ = forecast_.covariance();
   }
 
-  Eigen::VectorXd mean() const override { return forecast_.prediction(); }
-  Eigen::VectorXd standard_deviation() const override { return deviation_of(covariance_); }
-  double probability(Index i, double y) const override {
-    double sum = 0.0;
-    for (Index j = 0; j < levels(); ++j)
-      sum += weight(j) * noise_.probability((y - forecast_.prediction()(i)) / deviation_of(covariance(j))(i));
-    return std::isnan(sum) ? 1.0 : sum;  // NaN: a failed prediction
-  }
-  double quantile(Index i, double p) const override {
-    const double nu = running_.nu,
-                 units = nu == 0.0 ? normal_quantile(p) : student_quantile(p, nu) * std::sqrt((nu - 2.0) / nu);
-    return forecast_.prediction()(i) + units * standard_deviation()(i);
-  }
   double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override {
     error = y - forecast_.prediction();
     Eigen::VectorXd whitened(levels() * error.size()), log_weight(levels());
@@ -123,8 +94,14 @@ class RunningNoiseForecast final : public Forecast {
   Eigen::MatrixXd covariance(Index level) const {
     return merged_ ? covariance_ : Eigen::MatrixXd(forecast_.covariance(level));
   }
-  Eigen::ArrayXd deviation_of(const Eigen::MatrixXd& covariance) const {
-    return (factor_ * covariance.diagonal().array()).max(least_variance).sqrt();
+  SignalMixture signal(Index i) const override {
+    SignalMixture result{Eigen::VectorXd(levels()), Eigen::VectorXd::Constant(levels(), forecast_.prediction()(i)),
+                         Eigen::VectorXd(levels()), noise_};
+    for (Index j = 0; j < levels(); ++j) {
+      result.weight(j) = weight(j);
+      result.deviation(j) = std::sqrt(std::max(factor_ * covariance(j)(i, i), least_variance));
+    }
+    return result;
   }
 };
 

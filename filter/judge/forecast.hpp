@@ -15,7 +15,7 @@
 /// Predictions some samples ahead along a recorded run. Horizons, free runs and look-ahead learning all make them here.
 namespace modebank {
 
-/// A prediction of the measurement some steps ahead, with known inputs and no further measurements.
+/// A prediction of the n_y measured signals some steps ahead, with known inputs and no further measurements.
 class Forecast {
  public:
   using Vector = Eigen::Ref<const Eigen::VectorXd>;
@@ -26,12 +26,11 @@ class Forecast {
   /// Precedes the questions below. `samples`: number of samples ahead, at least 1.
   virtual void arrive(Eigen::Index /*samples*/) {}
 
-  virtual Eigen::VectorXd mean() const = 0;                ///< n_y
-  virtual Eigen::VectorXd standard_deviation() const = 0;  ///< n_y
-
+  virtual double mean(Eigen::Index i) const { return signal(i).centre(); }
+  virtual double standard_deviation(Eigen::Index i) const { return signal(i).standard_deviation(); }
   /// P(y_i <= y), and its inverse: the y with that probability.
-  virtual double probability(Eigen::Index i, double y) const = 0;
-  virtual double quantile(Eigen::Index i, double probability) const = 0;
+  virtual double probability(Eigen::Index i, double y) const { return signal(i).probability(y); }
+  virtual double quantile(Eigen::Index i, double probability) const { return signal(i).quantile(probability); }
   /// Joint log density of a complete measurement [nats]. `error`: measurement minus mean, n_y.
   virtual double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) = 0;
   virtual Eigen::VectorXd mode_probability() const = 0;  ///< K
@@ -42,6 +41,8 @@ class Forecast {
   Forecast() = default;
   Forecast(const Forecast&) = default;
   Forecast& operator=(const Forecast&) = default;
+  /// Distribution of signal i, whatever the other signals are. A forecast without one overrides the questions.
+  virtual SignalMixture signal(Eigen::Index /*i*/) const { return {}; }
 };
 
 /// A filter that goes through the moments of a run and can predict from each.

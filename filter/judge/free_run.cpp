@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <memory>
-#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -48,11 +47,10 @@ std::vector<SampleRange> stretches_of(const Trajectory& run, double dt_s) {
 }
 
 /// Stores the prediction of sample k; `forecast` has been advanced to k.
-void record(const Forecast& forecast, const Eigen::VectorXd& mean, Index k, FreeRun& out) {
-  out.mean.col(k) = mean;
-  out.deviation.col(k) = forecast.standard_deviation();
+void record(const Forecast& forecast, Index k, FreeRun& out) {
   forecast.mode_probability().maxCoeff(&out.mode(k));
-  for (Index i = 0; i < mean.size(); ++i) {
+  for (Index i = 0; i < out.mean.rows(); ++i) {
+    out.deviation(i, k) = forecast.standard_deviation(i);
     out.lower(i, k) = forecast.quantile(i, 0.5 * (1.0 - band_level));
     out.upper(i, k) = forecast.quantile(i, 0.5 * (1.0 + band_level));
   }
@@ -65,12 +63,14 @@ void predict_on(ForecastingFilter& filter, const Trajectory& run, Index t, Index
     interruption_point();
     lost = forecast.lost_paths();
     if (k >= end) return false;
-    const Eigen::VectorXd mean = forecast.mean();
+    Eigen::VectorXd mean(run.state.rows());
+    for (Index i = 0; i < mean.size(); ++i) mean(i) = forecast.mean(i);
     if (!mean.allFinite()) {
       out.notes.push_back("is predicted up to sample " + std::to_string(k - 1) + "; later predictions are not finite");
       return false;
     }
-    record(forecast, mean, k, out);
+    out.mean.col(k) = mean;
+    record(forecast, k, out);
     const auto y = run.state.col(k);
     if (missing_entries(y) > 0) return true;
     for (Index i = 0; i < mean.size(); ++i) out.pit(i, k) = forecast.probability(i, y(i));
@@ -139,12 +139,11 @@ namespace {
 /// limits rounding errors if measurements are large compared with their standard deviation.
 class FreeRunSums {
  public:
-  FreeRunSums(Index n_y)
-      : squared_error_(Eigen::ArrayXd::Zero(n_y)), y_(squared_error_), y_squared_(squared_error_), inside_{} {
-    inside_.fill(squared_error_);
-  }
-
   void add(const Trajectory& run, const FreeRun& predicted) {
+    if (y_.size() == 0) {
+      squared_error_ = y_ = y_squared_ = Eigen::ArrayXd::Zero(run.state.rows());
+      inside_.fill(y_);
+    }
     lost_ += predicted.lost_paths;
     for (Index k = 0; k < run.samples(); ++k)
       if (!std::isnan(predicted.log_density(k))) add_sample(run.state.col(k), predicted, k);
@@ -189,25 +188,16 @@ class FreeRunSums {
 std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std::vector<Trajectory>& runs,
                                             const std::vector<FreeRun>& free_runs, const FreeRunOptions& options) {
   std::vector<FreeRunRow> rows;
-  const auto add_row = [&](const FreeRunSums& sums, Role role, const std::string& run) {
-    FreeRunRow& row = rows.emplace_back(sums.row());
-    row.filter = filter;
-    row.role = role;
-    row.run = run;
-    row.start = options.samples;
-  };
-  for (const Role role : {Role::train, Role::test}) {
-    std::optional<FreeRunSums> pooled;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs[i].role != role) continue;
-      FreeRunSums single(runs[i].state.rows());
-      single.add(runs[i], free_runs.at(i));
-      add_row(single, role, runs[i].run);
-      if (!pooled) pooled.emplace(runs[i].state.rows());
-      pooled->add(runs[i], free_runs[i]);
-    }
-    if (pooled) add_row(*pooled, role, "*");
-  }
+  for (const Role role : {Role::train, Role::test})
+    sum_runs<FreeRunSums>(
+        runs, role, [&](std::size_t i, FreeRunSums& sums) { sums.add(runs[i], free_runs.at(i)); },
+        [&](const FreeRunSums& sums, const std::string& run) {
+          rows.push_back(sums.row());
+          rows.back().filter = filter;
+          rows.back().role = role;
+          rows.back().run = run;
+          rows.back().start = options.samples;
+        });
   return rows;
 }
 

@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "filter/judge/forecast.hpp"
+#include "filter/judge/statistics.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
@@ -99,15 +100,13 @@ std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std:
     rows.push_back(
         {filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt(), inside});
   };
-  for (const Role role : {Role::train, Role::test}) {
-    std::vector<HorizonSums> pooled;
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      if (runs[i].role != role) continue;
-      for (const HorizonSums& of : sums.at(i)) add_row(role, runs[i].run, of);
-      pool(sums[i], pooled);
-    }
-    for (const HorizonSums& of : pooled) add_row(role, "*", of);
-  }
+  using Sums = std::vector<HorizonSums>;
+  for (const Role role : {Role::train, Role::test})
+    sum_runs<Sums>(
+        runs, role, [&](std::size_t i, Sums& all) { pool(sums.at(i), all); },
+        [&](const Sums& all, const std::string& run) {
+          for (const HorizonSums& of : all) add_row(role, run, of);
+        });
   return rows;
 }
 

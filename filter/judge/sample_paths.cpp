@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "filter/step/predicted.hpp"
+#include "filter/step/noise_density.hpp"
 #include "ident/base/covariance.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -114,17 +114,14 @@ void SamplePaths::arrive(Index) {
   if (count() > 0) share_ /= static_cast<double>(count());
 }
 
-Eigen::VectorXd SamplePaths::mean() const {
-  if (count() == 0) return Eigen::VectorXd::Constant(bank_.C.rows(), not_a_number);
-  return bank_.C * predicted_.rowwise().mean();
+double SamplePaths::mean(Index i) const {
+  return count() > 0 ? bank_.C.row(i).dot(predicted_.rowwise().mean()) : not_a_number;
 }
 
-Eigen::VectorXd SamplePaths::standard_deviation() const {
-  if (count() < 2) return Eigen::VectorXd::Constant(bank_.C.rows(), not_a_number);
-  const Eigen::MatrixXd y = bank_.C * states_;
-  const Eigen::MatrixXd centred = y.colwise() - y.rowwise().mean();
-  const Eigen::ArrayXd variance = centred.array().square().rowwise().sum() / static_cast<double>(y.cols() - 1);
-  return (variance + R_.diagonal().array()).sqrt();
+double SamplePaths::standard_deviation(Index i) const {
+  if (count() < 2) return not_a_number;
+  const Eigen::ArrayXd y = (bank_.C.row(i) * states_).transpose();
+  return std::sqrt((y - y.mean()).square().sum() / static_cast<double>(count() - 1) + R_(i, i));
 }
 
 // The i-th of M sorted values is the quantile at i / (M + 1), with linear interpolation. A further path lies below this
@@ -163,7 +160,7 @@ double SamplePaths::log_density_of_mode(Eigen::VectorXd error, const Eigen::Matr
 }
 
 double SamplePaths::observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) {
-  error = y - mean();
+  for (Index i = 0; i < y.size(); ++i) error(i) = y(i) - mean(i);
   const Eigen::MatrixXd predicted = bank_.C * predicted_;
   Eigen::VectorXd log_likelihood = Eigen::VectorXd::Constant(share_.size(), lowest_log_density), posterior = share_;
   for (Index j = 0; j < share_.size(); ++j) {

@@ -25,8 +25,8 @@ class SamplePaths final : public Forecast {
   void step(const Vector& inputs) override;
   void arrive(Eigen::Index) override;
 
-  Eigen::VectorXd mean() const override;
-  Eigen::VectorXd standard_deviation() const override;
+  double mean(Eigen::Index i) const override;
+  double standard_deviation(Eigen::Index i) const override;
   double probability(Eigen::Index i, double y) const override;
   double quantile(Eigen::Index i, double p) const override;
   double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override;

@@ -3,9 +3,9 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <optional>
 #include <stdexcept>
 
+#include "filter/judge/calibration.hpp"
 #include "filter/judge/statistics.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -17,74 +17,61 @@ namespace {
 using Eigen::Index;
 
 /// Sums over scored samples of one or more runs. A sample is scored by its available signals.
-class ScoreSums {
- public:
-  explicit ScoreSums(Index measurements)
-      : squared_error_(Eigen::ArrayXd::Zero(measurements)), errors_(Eigen::ArrayXd::Zero(measurements)) {
-    for (Index i = 1; i <= measurements; ++i)
-      nis_tails_.push_back({chi_square_quantile(true_tail, static_cast<double>(i)),
-                            chi_square_quantile(1.0 - true_tail, static_cast<double>(i))});
-  }
+struct ScoreSums {
+  Index samples = 0, nis_above = 0, nis_below = 0;
+  double log_density = 0.0;
+  Eigen::ArrayXd squared_error, errors;
+  BandCounts counts;
+  std::vector<double> pit, whiteness;
 
   void add(const RunEvaluation& run, const RunScores& scores) {
-    nis_.begin_run();
+    if (errors.size() == 0) squared_error = errors = Eigen::ArrayXd::Zero(run.innovation.rows());
+    counts.begin_run(run);
     for (Index k = 0; k < run.log_density.size(); ++k)
       if (!std::isnan(run.log_density(k))) add_sample(run, k, scores);
-    whiteness_.push_back(scores.whiteness_p);
+    whiteness.push_back(scores.whiteness_p);
   }
 
   SummaryRow row() const {
     SummaryRow row;
-    row.samples = samples_;
-    const double N = samples_ > 0 ? static_cast<double>(samples_) : not_a_number;
-    const double components = pit_.empty() ? not_a_number : static_cast<double>(pit_.size());
-    row.log_score = log_density_ / N;
-    row.rmse = (squared_error_ / errors_).sqrt();
-    row.nis_mean = mean_distance(nis_, static_cast<double>(errors_.size()));
-    row.nis_above = static_cast<double>(nis_above_) / N;
-    row.nis_below = static_cast<double>(nis_below_) / N;
-    row.too_far = static_cast<double>(too_far_) / components;
-    row.too_close = static_cast<double>(too_close_) / components;
-    row.coverage_50 = static_cast<double>(inside_[0]) / components;
-    row.coverage_90 = static_cast<double>(inside_[1]) / components;
-    row.coverage_95 = static_cast<double>(inside_[2]) / components;
-    row.coverage_99 = static_cast<double>(inside_[3]) / components;
-    row.pit_distance = kolmogorov_distance(pit_);
-    row.whiteness_p = fisher_p(whiteness_);
+    const double N = samples > 0 ? static_cast<double>(samples) : not_a_number;
+    row.samples = samples;
+    row.log_score = log_density / N;
+    row.rmse = (squared_error / errors).sqrt();
+    row.nis_mean = mean_distance(counts.nis, static_cast<double>(errors.size()));
+    row.nis_above = static_cast<double>(nis_above) / N;
+    row.nis_below = static_cast<double>(nis_below) / N;
+    row.too_far = share_of(counts.far);
+    row.too_close = share_of(counts.close);
+    row.coverage_50 = 1.0 - share_of(counts.outside[0]);
+    row.coverage_90 = 1.0 - share_of(counts.outside[1]);
+    row.coverage_95 = 1.0 - share_of(counts.outside[2]);
+    row.coverage_99 = 1.0 - share_of(counts.outside[3]);
+    row.pit_distance = kolmogorov_distance(pit);
+    row.whiteness_p = fisher_p(whiteness);
     return row;
   }
 
  private:
-  Index samples_ = 0, nis_above_ = 0, nis_below_ = 0, too_far_ = 0, too_close_ = 0;
-  double log_density_ = 0.0;
-  SquaredDistances nis_;
-  Eigen::ArrayXd squared_error_, errors_;
-  std::vector<double> pit_, whiteness_;
-  std::vector<Interval> nis_tails_;                     ///< limits of the tails for one signal, two signals, ...
-  std::array<Index, coverage_levels.size()> inside_{};  ///< number of signals inside each central band
-  ScoreBands bands_;
+  std::vector<Interval> nis_tails_;  ///< limits of the tails for one signal, two signals, ...
 
   void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {
-    ++samples_;
-    log_density_ += run.log_density(k);
+    ++samples;
+    log_density += run.log_density(k);
     const auto there = (!run.pit.col(k).array().isNaN()).eval();
-    squared_error_ += there.select(run.innovation.col(k).array().square(), 0.0);
-    errors_ += there.cast<double>();
-    const Index signals = scored_signals(run, k);
-    nis_.add(run.nis(k), signals);
-    if (signals > 0) {
-      const Interval& tails = nis_tails_[static_cast<std::size_t>(signals - 1)];
-      nis_above_ += run.nis(k) > tails.upper;
-      nis_below_ += run.nis(k) < tails.lower;
+    squared_error += there.select(run.innovation.col(k).array().square(), 0.0);
+    errors += there.cast<double>();
+    counts.add(run, scores, k);
+    for (Index i = 0; i < there.size(); ++i)
+      if (there(i)) pit.push_back(run.pit(i, k));
+    while (std::ssize(nis_tails_) < there.size()) {
+      const double degrees = static_cast<double>(nis_tails_.size() + 1);
+      nis_tails_.push_back({chi_square_quantile(true_tail, degrees), chi_square_quantile(1.0 - true_tail, degrees)});
     }
-    for (Index i = 0; i < run.pit.rows(); ++i) {
-      if (!there(i)) continue;
-      const ScoreBands::Hits hits = bands_.of(scores.z(i, k));
-      too_far_ += hits.far;
-      too_close_ += hits.close;
-      for (std::size_t b = 0; b < inside_.size(); ++b) inside_[b] += !hits.outside[b];
-      pit_.push_back(run.pit(i, k));
-    }
+    if (!there.any()) return;
+    const Interval& tails = nis_tails_[static_cast<std::size_t>(there.count() - 1)];
+    nis_above += run.nis(k) > tails.upper;
+    nis_below += run.nis(k) < tails.lower;
   }
 };
 
@@ -96,22 +83,14 @@ std::vector<SummaryRow> summarize(const std::string& filter, Role role, const st
     throw std::invalid_argument(std::to_string(runs.size()) + " runs, but " + std::to_string(evaluations.size()) +
                                 " evaluations and " + std::to_string(scores.size()) + " of them scored");
   std::vector<SummaryRow> rows;
-  const auto add_row = [&](const ScoreSums& sums, const std::string& run) {
-    rows.push_back(sums.row());
-    rows.back().filter = filter;
-    rows.back().role = role;
-    rows.back().run = run;
-  };
-  std::optional<ScoreSums> pooled;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].role != role) continue;
-    ScoreSums single(evaluations[i].innovation.rows());
-    single.add(evaluations[i], scores[i]);
-    add_row(single, runs[i].run);
-    if (!pooled) pooled.emplace(evaluations[i].innovation.rows());
-    pooled->add(evaluations[i], scores[i]);
-  }
-  if (pooled) add_row(*pooled, "*");
+  sum_runs<ScoreSums>(
+      runs, role, [&](std::size_t i, ScoreSums& sums) { sums.add(evaluations[i], scores[i]); },
+      [&](const ScoreSums& sums, const std::string& run) {
+        rows.push_back(sums.row());
+        rows.back().filter = filter;
+        rows.back().role = role;
+        rows.back().run = run;
+      });
   return rows;
 }
 

@@ -1,9 +1,9 @@
 #include "filter/judge/statistics.hpp"
 
 #include <algorithm>
+#include <boost/math/special_functions/owens_t.hpp>
 #include <cmath>
 #include <limits>
-#include <utility>
 
 #include "ident/base/distributions.hpp"
 #include "ident/base/lagged_product.hpp"
@@ -12,11 +12,6 @@
 namespace modebank {
 
 namespace {
-
-constexpr double outer_tail = 0.025;
-constexpr double root_two_pi = 2.506628274631000502415765284811;
-constexpr double near_one = 0.999;    // the series below converges too slowly for larger correlations
-constexpr double negligible = 1e-10;  // terms with a smaller power of the correlation are left out of the sum
 
 double sum_of(const SeriesByRun& series) {
   double sum = 0.0;
@@ -84,19 +79,15 @@ SeriesByRun normal_scores(SeriesByRun series) {
   return series;
 }
 
-/// Correlation of the indicators that two standard normal variables of correlation r exceed the `outer_tail` quantile
-/// q: sum over j of r^j / j He_{j-1}(q)^2 / (j-1)! times phi(q)^2 / (outer_tail (1 - outer_tail)).
+/// Correlation of the indicators that two standard normal variables of correlation r exceed their quantile q of the
+/// upper `true_tail`. The probability that both do is true_tail - 2 T(q, sqrt((1 - r) / (1 + r))) with T of Owen (1956,
+/// Annals of Mathematical Statistics 27).
 double tail_correlation(double r) {
+  constexpr double near_one = 0.999;  // estimates of larger correlations are rounding errors of 1
   r = std::clamp(r, -near_one, near_one);
-  const double q = normal_score(1.0 - outer_tail);
-  const double density = std::exp(-0.5 * q * q) / root_two_pi;
-  // Hermite polynomials of order j - 1, divided by the square root of (j-1)!
-  double before = 0.0, hermite = 1.0, power = r, sum = 0.0;
-  for (double j = 1.0; std::abs(power) > negligible; ++j, power *= r) {
-    sum += power * hermite * hermite / j;
-    before = std::exchange(hermite, (q * hermite - std::sqrt(j - 1.0) * before) / std::sqrt(j));
-  }
-  return sum * density * density / (outer_tail * (1.0 - outer_tail));
+  const double both =
+      true_tail - 2.0 * boost::math::owens_t(normal_quantile(1.0 - true_tail), std::sqrt((1.0 - r) / (1.0 + r)));
+  return (both - true_tail * true_tail) / (true_tail * (1.0 - true_tail));
 }
 
 /// Mean distance per degree of freedom.
@@ -220,9 +211,9 @@ double cautious_time(double time, double samples) {
   return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
 }
 
-void SquaredDistances::begin_run() {
-  value.emplace_back();
-  degrees.emplace_back();
+void SquaredDistances::begin_run(std::size_t samples) {
+  value.emplace_back().reserve(samples);
+  degrees.emplace_back().reserve(samples);
 }
 
 void SquaredDistances::add(double distance, Eigen::Index d) {

@@ -3,9 +3,11 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
+#include <string>
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
+#include "ident/data/trajectory.hpp"
 #include "ident/model/residual_tests.hpp"
 
 namespace modebank {
@@ -30,6 +32,23 @@ std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations)
 /// Residual tests of a filter's one-step predictions over one run. The residuals are z; input lag 0 is the input of the
 /// predicted transition. Throws std::invalid_argument if sizes disagree.
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options = {});
+
+/// Sums the runs of a role: calls row(sums, name) for each run in order, then for all of them together, with the name
+/// "*". `add`: adds the i-th run to some sums, which are Sums() at first.
+template <class Sums, class Add, class Row>
+void sum_runs(const std::vector<Trajectory>& runs, Role role, Add add, Row row) {
+  Sums all;
+  bool any = false;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    Sums one;
+    add(i, one);
+    row(one, runs[i].run);
+    add(i, all);
+    any = true;
+  }
+  if (any) row(all, "*");
+}
 
 /// Kolmogorov's distance sup |F_n(u) - u| of the sample from the uniform distribution on [0, 1]; NaN without values.
 double kolmogorov_distance(std::vector<double> values);
@@ -70,7 +89,7 @@ double autocorrelation_time(const SeriesByRun& series);
 
 /// Autocorrelation time of the indicator that a value is among the largest (or smallest) 2.5 %. Such values are too few
 /// for a direct estimate. So the time follows from the autocorrelations of all values' normal scores, assumed jointly
-/// normal (tetrachoric series: Pearson 1900). NaN without values.
+/// normal. NaN without values.
 double autocorrelation_time_of_tail(const SeriesByRun& series);
 
 /// A cautious autocorrelation time from `samples` samples. Its excess over 1 is raised by the relative standard error
@@ -88,7 +107,8 @@ struct SquaredDistances {
   SeriesByRun value;
   SeriesByRun degrees;  ///< degrees of freedom of each distance
 
-  void begin_run();
+  /// `samples`: memory to reserve.
+  void begin_run(std::size_t samples = 0);
   /// `d`: degrees of freedom. If `d` is 0, nothing is added.
   void add(double distance, Eigen::Index d);
 };

@@ -73,7 +73,7 @@ DriftingFilter::DriftingFilter(const Bank& bank)
       start_level_(model_.switches() ? stationary(model_.running.switching) : Eigen::VectorXd::Ones(1)),
       level_(start_level_),
       predicted_level_(level_),
-      mixing_{Eigen::MatrixXd(level_.size(), level_.size())},
+      mixing_(level_.size(), level_.size()),
       weight_(level_.size()) {
   const Index r = model_.structure.regressors(), n = model_.structure.states, J = levels();
   theta_ = mixed_theta_ = Ph_ = Eigen::MatrixXd::Zero(r, J * n);
@@ -99,9 +99,9 @@ void DriftingFilter::mix_output(Index level, Index output) {
   Eigen::MatrixXd& mixed = mixed_P_[static_cast<std::size_t>(at(level, output))];
   theta.setZero();
   mixed.setZero();
-  for (Index i = 0; i < levels(); ++i) theta += mixing_.matrix(i, level) * theta_.col(at(i, output));
+  for (Index i = 0; i < levels(); ++i) theta += mixing_(i, level) * theta_.col(at(i, output));
   for (Index i = 0; i < levels(); ++i) {
-    const double weight = mixing_.matrix(i, level);
+    const double weight = mixing_(i, level);
     mixed += weight * P(i, output);
     deviation_ = theta_.col(at(i, output)) - theta;
     add_square(weight / v_(output), deviation_, mixed);

@@ -32,7 +32,7 @@ DriftingForecast::DriftingForecast(DriftingModel model)
       stable_theta0_(contracted(model_.structure, model_.scale, model_.theta0)),
       P_(static_cast<std::size_t>(model_.structure.states)),
       h_(model_.structure.regressors()),
-      mixing_{Eigen::MatrixXd(model_.running.levels(), model_.running.levels())},
+      mixing_(model_.running.levels(), model_.running.levels()),
       Z_(static_cast<std::size_t>(model_.running.levels())),
       cross_(P_.size()),
       next_cross_(cross_),
@@ -85,7 +85,7 @@ void DriftingForecast::mix() {
   for (Index j = 0; j < level_.size(); ++j) {
     Eigen::MatrixXd& mixed = next_Z_[static_cast<std::size_t>(j)];
     mixed.setZero();
-    for (Index i = 0; i < level_.size(); ++i) mixed += mixing_.matrix(i, j) * Z_[static_cast<std::size_t>(i)];
+    for (Index i = 0; i < level_.size(); ++i) mixed += mixing_(i, j) * Z_[static_cast<std::size_t>(i)];
   }
   std::swap(Z_, next_Z_);
 }

@@ -53,41 +53,9 @@ namespace small {
 
 using Eigen::Index;
 
-/// A number of rows or columns that matter. Fixed sizes take all, so that loops have constant lengths.
-template <int N>
-constexpr Index or_all(Index count) {
-  return N == Eigen::Dynamic ? count : N;
-}
-
-/// out = a b'. Only the first `seen` columns of b are nonzero. Requires seen >= 1; `out` must not alias.
-template <class Out, class A, class B>
-[[gnu::always_inline]] inline void multiply_transposed(Out& out, const A& a, const B& b, Index seen) {
-  for (Index j = 0; j < b.rows(); ++j)
-    for (Index i = 0; i < a.rows(); ++i) {
-      double sum = a(i, 0) * b(j, 0);
-      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
-      out(i, j) = sum;
-    }
-}
-
-/// out = a b. Rows i >= `full` of `a` are shifts: row i is e_{i - full}'. b is zero outside its first `inner` rows and
-/// columns. Only the first `inner` columns of `out` are written. The bits equal those of `multiply` if b is finite.
-/// With full = a.rows(), `a` may be any matrix.
-template <class Out, class A, class B>
-[[gnu::always_inline]] inline void multiply_shifting(Out& out, const A& a, const B& b, Index full, Index inner) {
-  for (Index j = 0; j < std::min(inner, b.cols()); ++j) {
-    for (Index i = 0; i < full; ++i) {
-      double sum = a(i, 0) * b(0, j);
-      for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(k, j);
-      out(i, j) = sum;
-    }
-    for (Index i = full; i < a.rows(); ++i) out(i, j) = b(i - full, j);
-  }
-}
-
 /// out = a b. Requires an inner size >= 1; `out` must not alias.
 template <class Out, class A, class B>
-[[gnu::always_inline]] inline void multiply(Out& out, const A& a, const B& b) {
+[[gnu::always_inline]] inline void multiply(Out&& out, const A& a, const B& b) {
   for (Index j = 0; j < b.cols(); ++j)
     for (Index i = 0; i < a.rows(); ++i) {
       double sum = a(i, 0) * b(0, j);
@@ -96,55 +64,17 @@ template <class Out, class A, class B>
     }
 }
 
-/// out += a b'. b is as in multiply_shifting. The columns of `a` from `inner` on are zero. The product must be
-/// symmetric (see add_symmetric_product).
-template <class Out, class A, class B>
-[[gnu::always_inline]] inline void add_symmetric_product_shifting(Out& out, const A& a, const B& b, Index full,
-                                                                  Index inner) {
-  const Index rows = std::min(a.rows(), inner + full);
-  for (Index j = 0; j < rows; ++j)
-    for (Index i = j; i < rows; ++i) {
-      double sum = 0.0;
-      if (j >= full) {
-        sum = a(i, j - full);
-      } else {
-        sum = a(i, 0) * b(j, 0);
-        for (Index k = 1; k < inner; ++k) sum += a(i, k) * b(j, k);
-      }
-      out(i, j) += sum;
-      if (i != j) out(j, i) = out(i, j);
-    }
-}
-
-/// out = a b. `a` differs from the identity only in its first `seen` columns. The bits equal those of `multiply` if b
-/// is finite. With seen = a.cols(), `a` may be any matrix.
-template <class Out, class A, class B>
-[[gnu::always_inline]] inline void multiply_seeing(Out& out, const A& a, const B& b, Index seen) {
-  for (Index j = 0; j < b.cols(); ++j)
-    for (Index i = 0; i < a.rows(); ++i) {
-      double sum = a(i, 0) * b(0, j);
-      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(k, j);
-      out(i, j) = i < seen ? sum : sum + b(i, j);
-    }
-}
-
-/// out += a b', with `a` and b as in multiply_seeing. The product must be symmetric (see add_symmetric_product).
-template <class Out, class A, class B>
-[[gnu::always_inline]] inline void add_symmetric_product_seeing(Out& out, const A& a, const B& b, Index seen) {
-  for (Index j = 0; j < b.rows(); ++j)
-    for (Index i = j; i < a.rows(); ++i) {
-      double sum = a(i, 0) * b(j, 0);
-      for (Index k = 1; k < seen; ++k) sum += a(i, k) * b(j, k);
-      out(i, j) += j < seen ? sum : sum + a(i, j);
-      if (i != j) out(j, i) = out(i, j);
-    }
-}
-
 /// out += a b', for a product that is symmetric in theory. The lower triangle is computed and mirrored, so `out` is
 /// exactly symmetric.
 template <class Out, class A, class B>
-void add_symmetric_product(Out& out, const A& a, const B& b) {
-  add_symmetric_product_shifting(out, a, b, b.rows(), a.cols());
+[[gnu::always_inline]] inline void add_symmetric_product(Out&& out, const A& a, const B& b) {
+  for (Index j = 0; j < b.rows(); ++j)
+    for (Index i = j; i < a.rows(); ++i) {
+      double sum = a(i, 0) * b(j, 0);
+      for (Index k = 1; k < a.cols(); ++k) sum += a(i, k) * b(j, k);
+      out(i, j) += sum;
+      if (i != j) out(j, i) = out(i, j);
+    }
 }
 
 /// out += weight (P + d d'); all matrices are symmetric.
@@ -220,11 +150,9 @@ template <int N>
 struct Gaussian {
   Eigen::Matrix<double, N, 1> mean;
   Eigen::Matrix<double, N, N> covariance;
-  /// Rows from this index on are known: their covariance is zero, and their mean is the same in every mode. The lags of
-  /// an exact sensor are known.
-  Eigen::Index uncertain;
+  bool known = false;  ///< the covariance is zero, since an exact sensor measured all samples of the state
 
-  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size), uncertain(size) {
+  explicit Gaussian(Eigen::Index size) : mean(size), covariance(size, size) {
     mean.setZero();
     covariance.setZero();
   }

@@ -38,9 +38,7 @@ struct FilterState {
 
 /// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j. Unlike in a TransitionMatrix, the columns
 /// sum to one. Rows are contiguous: merge computes several columns at a time.
-struct MixingWeights {
-  Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> matrix;  ///< K x K
-};
+using MixingWeights = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // K x K
 
 /// Intermediate results of one step, sized once.
 template <int N, int NY>
@@ -70,7 +68,7 @@ struct FilterStep {
                   KalmanStep<N, NY>(n, model.C.rows(), model.terms.empty() ? 0 : model.structure.regressors()));
     log_likelihood.resize(K);
     mixed.assign(model.modes.size(), Gaussian<N>(n));
-    mixing.matrix.setZero(K, K);
+    mixing.setZero(K, K);
   }
 };
 
@@ -104,9 +102,7 @@ const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const
 
 /// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode starts from
 /// its own state.
-inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c,
-                           MixingWeights& weights) {
-  auto& W = weights.matrix;
+inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, Eigen::VectorXd& c, MixingWeights& W) {
   for (Eigen::Index j = 0; j < mu.size(); ++j) {
     double sum = 0.0;
     for (Eigen::Index i = 0; i < mu.size(); ++i) sum += T(i, j) * mu(i);
@@ -118,42 +114,24 @@ inline void mixing_weights(const Eigen::MatrixXd& T, const Eigen::VectorXd& mu, 
   }
 }
 
-/// Number of rows that are uncertain in any of `parts` (Gaussian::uncertain).
-template <int N>
-Eigen::Index uncertain_rows(std::span<const Gaussian<N>> parts) {
-  Eigen::Index most = 0;
-  for (const Gaussian<N>& part : parts) most = std::max(most, part.uncertain);
-  return most;
-}
-
-template <int N>
-bool has_one_mean(std::span<const Gaussian<N>> parts, Eigen::Index row) {
-  return std::all_of(parts.begin(), parts.end(),
-                     [&](const Gaussian<N>& part) { return part.mean(row) == parts.front().mean(row); });
-}
-
 /// Mixtures j = first .. first + Count - 1 of `merge`.
 template <int Count, int N, class Weights>
 void merge_some(std::span<const Gaussian<N>> parts, const Weights& weights, Eigen::Index first, Gaussian<N>* merged,
                 bool exact) {
   using Row = Eigen::Array<double, 1, Count>;
-  const Eigen::Index n = parts[0].mean.size(), count = weights.rows(), uncertain = uncertain_rows(parts);
+  const Eigen::Index n = parts[0].mean.size(), count = weights.rows();
   const Gaussian<N>* part = parts.data();
   const auto weight = [&](Eigen::Index i) { return weights.template block<1, Count>(i, first).array(); };
-  for (int j = 0; j < Count; ++j) {
-    merged[j].uncertain = uncertain;
-    if (uncertain == n) continue;
-    merged[j].mean = part[0].mean;
-    merged[j].covariance.setZero();
-  }
-  for (Eigen::Index a = 0; a < uncertain; ++a) {
+  for (Eigen::Index a = 0; a < n; ++a) {
     Row sum = Row::Zero();
     for (Eigen::Index i = 0; i < count; ++i) sum += weight(i) * part[i].mean(a);
-    const bool same = exact && has_one_mean(parts, a);
+    const bool same = exact && std::all_of(parts.begin(), parts.end(), [&](const Gaussian<N>& one) {
+                        return one.mean(a) == parts.front().mean(a);
+                      });
     for (int j = 0; j < Count; ++j) merged[j].mean(a) = same ? part[0].mean(a) : sum(j);
   }
-  for (Eigen::Index b = 0; b < uncertain; ++b)
-    for (Eigen::Index a = b; a < uncertain; ++a) {
+  for (Eigen::Index b = 0; b < n; ++b)
+    for (Eigen::Index a = b; a < n; ++a) {
       Row mean_a, mean_b, sum = Row::Zero();
       for (int j = 0; j < Count; ++j) {
         mean_a(j) = merged[j].mean(a);
@@ -163,6 +141,7 @@ void merge_some(std::span<const Gaussian<N>> parts, const Weights& weights, Eige
         sum += weight(i) * (part[i].covariance(a, b) + (part[i].mean(a) - mean_a) * (part[i].mean(b) - mean_b));
       for (int j = 0; j < Count; ++j) merged[j].covariance(a, b) = merged[j].covariance(b, a) = sum(j);
     }
+  for (int j = 0; j < Count; ++j) merged[j].known = false;
 }
 
 /// Steps 2 and 5: mean and covariance of the mixtures sum_i weights(i, j) N(parts[i]) (moment matching), j = 0, 1, ..
@@ -222,7 +201,7 @@ namespace salvi2025 {
 
 /// Weights w(k-1)_i T_ij of [S25, eq. 12-13]. Their sum is below one, so mixed states shrink towards zero.
 inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& w, MixingWeights& weights) {
-  weights.matrix.noalias() = w.asDiagonal() * transition.matrix();
+  weights.noalias() = w.asDiagonal() * transition.matrix();
 }
 
 /// The modes' probabilities from log L_j = log N(C xhat_j - z; 0, S_j). As published in [S25, eq. 16], the residual is
@@ -252,7 +231,7 @@ template <int N, int NY, class Y>
 void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   small::multiply(state.modes[0].mean, model.start_gain, y);
   state.modes[0].covariance = model.start_covariance;
-  state.modes[0].uncertain = model.exact ? 0 : model.structure.dimension();
+  state.modes[0].known = model.exact;
   for (std::size_t j = 1; j < state.modes.size(); ++j) state.modes[j] = state.modes[0];
   state.mode_probability = model.initial_probability;
   floor_probabilities(state.mode_probability);
@@ -280,7 +259,11 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
     mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
                    step.mixing);
   }
-  merge<N>(state.modes, step.mixing.matrix, step.mixed, model.exact);
+  const auto known = [&](const Gaussian<N>& mode) { return mode.known && mode.mean == state.modes.front().mean; };
+  if (std::all_of(state.modes.begin(), state.modes.end(), known))
+    step.mixed = state.modes;
+  else
+    merge<N>(state.modes, step.mixing, step.mixed, model.exact);
   return step.mixed;
 }
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "filter/step/imm.hpp"
-#include "filter/step/predicted.hpp"
+#include "filter/step/noise_density.hpp"
 #include "filter/step/samples.hpp"
 #include "ident/base/covariance.hpp"
 
@@ -58,15 +58,54 @@ class ImmFilter {
   /// T of the next step under the acting inputs `v`.
   const Eigen::MatrixXd& transition(const Vector& v) { return transition_of_step(*model_, state_, v, step_); }
 
-  /// Moments of the predicted mixture, n and n_y x n_y. Call after `predict`.
+  /// Moments of the predicted mixture, n and n_y x n_y: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). Call
+  /// after `predict`.
   void combine(Eigen::VectorXd& state, Eigen::MatrixXd& innovation_covariance) {
-    modebank::combine(*model_, step_, state, innovation_covariance);
+    const Eigen::VectorXd& c = step_.predicted_probability;
+    step_.mean.setZero();
+    for (std::size_t j = 0; j < step_.kalman.size(); ++j)
+      step_.mean += c(static_cast<Eigen::Index>(j)) * step_.kalman[j].predicted.mean;
+    step_.spread.setZero();
+    for (std::size_t j = 0; j < step_.kalman.size(); ++j) {
+      step_.difference = step_.kalman[j].predicted.mean - step_.mean;
+      small::multiply(step_.residual, model_->C, step_.difference);
+      small::add_about_mean(step_.spread, c(static_cast<Eigen::Index>(j)), step_.kalman[j].innovation_covariance,
+                            step_.residual);
+    }
+    state = step_.mean;
+    innovation_covariance = step_.spread;
   }
-  /// Probability integral transform of y (predicted.hpp), n_y. Call after `update` with the same y.
-  /// `log_density`: that of `update`; if signals are rounded it becomes that of their intervals.
+  /// Probability integral transform of the last measurement y (Rosenblatt 1952). Component i is the predictive
+  /// distribution function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights.
+  /// NaN if y_i is missing. For a rounded signal it lies between the values at both ends of y_i's interval: `pit` is
+  /// their mean and `width` their difference, else 0. `log_density`: that of `update`; if signals are rounded it
+  /// becomes that of their intervals. Overwrites log_likelihood().
   void transform(const Vector& y, Eigen::VectorXd& pit, Eigen::VectorXd& width, double& log_density) {
-    const double of_intervals = probability_transform(*model_, y, step_, weights_, pit, width);
-    if (model_->quantum.size() > 0) log_density = of_intervals;
+    const bool rounded = model_->quantum.size() > 0;
+    double of_intervals = 0.0;
+    weights_ = step_.predicted_probability;
+    width.setZero();
+    for (Eigen::Index i = 0; i < pit.size(); ++i) {
+      pit(i) = std::numeric_limits<double>::quiet_NaN();
+      if (is_missing(y(i))) continue;
+      const bool scores = rounded || i + 1 < pit.size();
+      const double quantum = rounded ? model_->quantum(i) : 0.0, half = 0.5 * quantum;
+      double low = 0.0, high = 0.0;
+      for (Eigen::Index j = 0; j < weights_.size(); ++j) {
+        const KalmanStep<N, NY>& mode = step_.kalman[static_cast<std::size_t>(j)];
+        const ModeSignal signal{mode.decorrelated(i), mode.cholesky.D(i)};
+        const double deviation = signal.unrounded_deviation(quantum);
+        high += weights_(j) * normal_cdf((signal.e + half) / deviation);
+        if (quantum > 0.0) low += weights_(j) * normal_cdf((signal.e - half) / deviation);
+        if (scores) step_.log_likelihood(j) = signal.log_density(quantum);
+      }
+      high = high < 1.0 ? high : 1.0;  // limits rounding errors of the sum of weights
+      low = quantum > 0.0 ? std::min(low, high) : high;
+      pit(i) = 0.5 * (low + high);
+      width(i) = high - low;
+      if (scores) of_intervals += bayes(weights_, step_.log_likelihood, weights_);
+    }
+    if (rounded) log_density = of_intervals;
   }
   /// Moments of the present mixture, n and n x n.
   void merge(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) {
@@ -89,8 +128,8 @@ class ImmFilter {
     return bayes(step_.predicted_probability, step_.log_likelihood, weights_);
   }
   /// Predicted distribution of signal i, whatever the other signals are.
-  NormalMixture signal(Eigen::Index i) const {
-    NormalMixture result{step_.predicted_probability, step_.predicted_probability, step_.predicted_probability};
+  SignalMixture signal(Eigen::Index i) const {
+    SignalMixture result{step_.predicted_probability, step_.predicted_probability, step_.predicted_probability};
     for (std::size_t h = 0; h < step_.kalman.size(); ++h) {
       const auto j = static_cast<Eigen::Index>(h);
       result.mean(j) = model_->C.row(i).dot(step_.kalman[h].predicted.mean);
@@ -112,15 +151,7 @@ class ImmFilter {
     for (const Gaussian<N>& mode : state_.modes)
       if (!is_covariance(mode.covariance))
         throw std::invalid_argument("the snapshot has a matrix that is not a covariance");
-    // Rows that are known have the same mean in all modes, and zero covariance.
-    Eigen::Index uncertain = model_->structure.dimension();
-    const auto known = [&](Eigen::Index row) {
-      return has_one_mean<N>(state_.modes, row) &&
-             std::all_of(state_.modes.begin(), state_.modes.end(),
-                         [row](const Gaussian<N>& mode) { return (mode.covariance.col(row).array() == 0.0).all(); });
-    };
-    while (model_->exact && uncertain > 0 && known(uncertain - 1)) --uncertain;
-    for (Gaussian<N>& mode : state_.modes) mode.uncertain = uncertain;
+    for (Gaussian<N>& mode : state_.modes) mode.known = model_->exact && mode.covariance.isZero(0.0);
   }
 
  private:

@@ -84,19 +84,17 @@ struct KalmanStep {
       predicted.mean(i) = from.mean(i - model.full_rows);
     const auto& F = model.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
     predicted.covariance = noise_factor * mode.Q;
-    predicted.uncertain = std::min(from.mean.size(), from.uncertain + model.full_rows);
-    if (from.uncertain > 0) {
-      const Eigen::Index full = small::or_all<N>(model.full_rows), inner = small::or_all<N>(from.uncertain);
-      small::multiply_shifting(NN_, F, from.covariance, full, inner);
-      small::add_symmetric_product_shifting(predicted.covariance, NN_, F, full, inner);
-    }
+    known_before_ = from.known;
+    if (!from.known) add_propagated(F, from.covariance, all_or(model.full_rows));
     make_usable(predicted);
   }
   /// Predicts the measurement: S and its factor. Here and in the functions below, `sensor` has C and R. `sensor` is the
   /// model, or its part for the available signals.
   template <class Sensor>
   void expect(const Sensor& sensor) {
-    small::multiply_transposed(PCt_, predicted.covariance, sensor.C, small::or_all<N>(sensor.seen_columns));
+    const Eigen::Index seen = all_or(sensor.seen_columns);
+    small::multiply(PCt_, predicted.covariance.template leftCols<N>(seen),
+                    sensor.C.template leftCols<N>(seen).transpose());
     innovation_covariance = sensor.R;
     small::add_symmetric_product(innovation_covariance, sensor.C, PCt_.transpose());
     cholesky.factorise(innovation_covariance);
@@ -112,12 +110,12 @@ struct KalmanStep {
   /// State after the measurement, covariance in Joseph's form.
   template <class Sensor, class Y>
   void correct(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
-    posterior.uncertain = predicted.uncertain;
-    if (sensor.exact && predicted.uncertain <= sensor.seen_columns) {
+    posterior.known = sensor.exact && known_before_;
+    if (posterior.known) {
       posterior.mean = predicted.mean;
+      posterior.mean.head(sensor.seen_columns) = y;
       posterior.covariance.setZero();
-      posterior.uncertain = 0;
-      return take_exactly(sensor, y, posterior);
+      return;
     }
     for (Eigen::Index i = 0; i < gain_.rows(); ++i) {  // row i of K = P C' S^-1; S is symmetric
       gain_.row(i) = PCt_.row(i);
@@ -127,16 +125,18 @@ struct KalmanStep {
     posterior.mean += predicted.mean;
     small::multiply(closed_loop_, gain_, sensor.C);
     closed_loop_ = -closed_loop_;
-    const Eigen::Index seen = small::or_all<N>(sensor.seen_columns);
     closed_loop_.diagonal().array() += 1.0;
-    small::multiply_seeing(NN_, closed_loop_, predicted.covariance, seen);
-    posterior.covariance.setZero();
-    small::add_symmetric_product_seeing(posterior.covariance, NN_, closed_loop_, seen);
+    take_closed_loop(all_or(sensor.seen_columns), posterior.covariance);
     small::multiply(NY_, gain_, sensor.R);
     small::add_symmetric_product(posterior.covariance, NY_, gain_);
     if (!is_finite(posterior)) posterior = predicted;  // a correction that overflows is ignored
     bound_variances(predicted, posterior);
-    if (sensor.exact) take_exactly(sensor, y, posterior);
+    if (!sensor.exact) return;
+    // Copies the rows that the sensor measures. A correction would add rounding errors.
+    posterior.mean.head(sensor.seen_columns) = y;
+    posterior.covariance.topRows(sensor.seen_columns).setZero();
+    posterior.covariance.leftCols(sensor.seen_columns).setZero();
+    posterior.known = posterior.covariance.isZero(0.0);
   }
   /// log N(residual; 0, S) for any residual. `residual` is decorrelated in place.
   template <class Vector>
@@ -155,13 +155,32 @@ struct KalmanStep {
   TermValues terms_;
   Eigen::Matrix<double, N, N> bent_F_;
 
-  /// Copies the rows that an exact sensor measures. A correction would add rounding errors.
-  template <class Sensor, class Y>
-  static void take_exactly(const Sensor& sensor, const Y& y, Gaussian<N>& posterior) {
-    const Eigen::Index seen = sensor.seen_columns;
-    posterior.mean.head(seen) = y;
-    posterior.covariance.topRows(seen).setZero();
-    posterior.covariance.leftCols(seen).setZero();
+  bool known_before_ = false;  ///< Gaussian::known of the start of the prediction
+
+  /// Fixed sizes take all rows or columns, so that loops have constant lengths.
+  static constexpr Eigen::Index all_or(Eigen::Index count) { return N == Eigen::Dynamic ? count : N; }
+  /// Adds F P F' to the predicted covariance. The rows of F after the first `full` shift older samples.
+  void add_propagated(const Eigen::Matrix<double, N, N>& F, const Eigen::Matrix<double, N, N>& P, Eigen::Index full) {
+    const auto F1 = F.template topRows<N>(full);
+    auto F1P = NN_.template topRows<N>(full);
+    small::multiply(F1P, F1, P);
+    small::add_symmetric_product(predicted.covariance.template topLeftCorner<N, N>(full, full), F1P, F1);
+    if (const Eigen::Index older = P.rows() - full; older > 0) {
+      predicted.covariance.topRightCorner(full, older) += F1P.leftCols(older);
+      predicted.covariance.bottomLeftCorner(older, full) += F1P.leftCols(older).transpose();
+      predicted.covariance.bottomRightCorner(older, older) += P.topLeftCorner(older, older);
+    }
+  }
+  /// (I - K C) P (I - K C)'. The closed loop differs from the identity only in its first `seen` columns.
+  void take_closed_loop(Eigen::Index seen, Eigen::Matrix<double, N, N>& result) {
+    const auto changed = closed_loop_.template leftCols<N>(seen);
+    small::multiply(NN_, changed, predicted.covariance.template topRows<N>(seen));
+    result.setZero();
+    if (const Eigen::Index rest = NN_.rows() - seen; rest > 0) {
+      NN_.bottomRows(rest) += predicted.covariance.bottomRows(rest);
+      result.bottomRightCorner(rest, rest) = NN_.bottomRightCorner(rest, rest);
+    }
+    small::add_symmetric_product(result, NN_.template leftCols<N>(seen), changed);
   }
   /// Adds the terms to the predicted mean, and their derivatives to F.
   template <class U>

@@ -213,7 +213,7 @@ class ReversePass {
           to.covariance.reshaped();
     }
     by_weight_.noalias() = moments_.lazyProduct(by_moments_);
-    by_moments_before_.noalias() = by_moments_.lazyProduct(step.mixing.matrix.transpose());
+    by_moments_before_.noalias() = by_moments_.lazyProduct(step.mixing.transpose());
     by_before_.probability.setZero();
     for (Index i = 0; i < K; ++i) {
       Gaussian<N>& by = by_before_.modes[static_cast<std::size_t>(i)];
@@ -223,7 +223,7 @@ class ReversePass {
     const VectorXd& prior = step.predicted_probability;
     for (Index j = 0; j < K; ++j) {
       if (prior(j) < impossible_probability) continue;
-      const double mean_by_weight = by_weight_.col(j).dot(step.mixing.matrix.col(j));
+      const double mean_by_weight = by_weight_.col(j).dot(step.mixing.col(j));
       const auto by_pair = ((by_weight_.col(j).array() - mean_by_weight) / prior(j) + by_prior_(j)).matrix();
       sum_.transition.col(j) += by_pair.cwiseProduct(before.mode_probability);
       by_before_.probability += by_pair.cwiseProduct(model_.transition.matrix().col(j));

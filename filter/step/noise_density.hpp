@@ -1,10 +1,14 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "filter/step/gaussian.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/log_two_pi.hpp"
 
@@ -58,6 +62,11 @@ class StudentNoise {
     if (gaussian()) return normal_cdf(value);
     return student_probability(value * std::sqrt(degrees_ / (degrees_ - 2.0)), degrees_);
   }
+  /// The value with P(X <= value) = `probability`.
+  double quantile(double probability) const {
+    return gaussian() ? normal_quantile(probability)
+                      : student_quantile(probability, degrees_) * std::sqrt((degrees_ - 2.0) / degrees_);
+  }
   /// log P(|X - middle| <= width / 2), with width > 0.
   double log_mass(double middle, double width) const {
     if (gaussian()) return log_normal_mass(middle, width);
@@ -71,6 +80,59 @@ class StudentNoise {
 
  private:
   double degrees_, log_constant_;
+};
+
+/// The distribution of one signal: a mixture.
+struct SignalMixture {
+  Eigen::VectorXd weight, mean, deviation;
+  StudentNoise noise = StudentNoise(0.0);
+
+  double centre() const { return weight.dot(mean); }
+  double standard_deviation() const {
+    return std::sqrt((weight.array() * (deviation.array().square() + (mean.array() - centre()).square())).sum());
+  }
+  /// P(X <= y); 1 if the prediction failed.
+  double probability(double y) const {
+    double sum = 0.0;
+    for (Eigen::Index j = 0; j < weight.size(); ++j) sum += weight(j) * noise.probability((y - mean(j)) / deviation(j));
+    return sum < 1.0 ? sum : 1.0;
+  }
+  /// By bisection between the parts' own quantiles.
+  double quantile(double probability_below) const {
+    constexpr double negligible_weight = 1e-9;  // smallest weight of a part that can matter at the edge of a band
+    const double score = noise.quantile(probability_below);
+    double low = std::numeric_limits<double>::infinity(), high = -low;
+    for (Eigen::Index j = 0; j < weight.size(); ++j) {
+      if (!(weight(j) > negligible_weight)) continue;
+      low = std::min(low, mean(j) + score * deviation(j));
+      high = std::max(high, mean(j) + score * deviation(j));
+    }
+    constexpr int most_halvings = 200;
+    constexpr double close = 1e-12;
+    for (int i = 0; i < most_halvings && high - low > close * (std::abs(low) + std::abs(high)); ++i) {
+      const double middle = 0.5 * (low + high);
+      (probability(middle) < probability_below ? low : high) = middle;
+    }
+    return 0.5 * (low + high);
+  }
+};
+
+/// One signal's innovation in one mode, given the previous signals, and its variance.
+struct ModeSignal {
+  double e = 0.0, s = 0.0;
+
+  /// Standard deviation of the signal before it was rounded. R is at least the variance of rounding, q^2 / 12, so s
+  /// contains it; the interval's mass must not count it again.
+  double unrounded_deviation(double quantum) const {
+    return std::sqrt(std::max(s - quantum * quantum / 12.0, relative_pivot_floor * s));
+  }
+  /// Log of the mean density of the reading's interval, log(mass / q). As q goes to 0 it tends to the log density, so
+  /// scores of coarse and fine readings have one unit.
+  double log_density(double quantum) const {
+    if (quantum == 0.0) return -0.5 * (log_two_pi + std::log(s) + e * e / s);
+    const double deviation = unrounded_deviation(quantum);
+    return measured_density(log_normal_mass(e / deviation, quantum / deviation) - std::log(quantum));
+  }
 };
 
 }  // namespace modebank

@@ -5,6 +5,7 @@
 
 #include "filter/step/imm_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/free_run_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -15,45 +16,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
 constexpr int any = Eigen::Dynamic;
-
-/// Products for lagged samples skip factors that are zero or one.
-TEST(SmallProducts, OfShiftsAndOfPartsThatAreSeenHaveThePlainOnesBits) {
-  const Index n = 7, full = 2;
-  MatrixXd F = MatrixXd::Zero(n, n), gain = MatrixXd::Random(n, full), P(n, n);
-  F.topRows(full) = MatrixXd::Random(full, n);
-  for (Index i = full; i < n; ++i) F(i, i - full) = 1.0;
-  const MatrixXd root = MatrixXd::Random(n, n);
-  P = root * root.transpose();
-  MatrixXd closed = MatrixXd::Identity(n, n);
-  closed.leftCols(full) -= gain;
-  MatrixXd plain(n, n), quick(n, n), plain_sum = P, quick_sum = P;
-  small::multiply(plain, F, P);
-  small::multiply_shifting(quick, F, P, full, P.rows());
-  EXPECT_EQ(plain, quick);
-  small::add_symmetric_product(plain_sum, plain, F);
-  small::add_symmetric_product_shifting(quick_sum, quick, F, full, P.rows());
-  EXPECT_EQ(plain_sum, quick_sum);
-  small::multiply(plain, closed, P);
-  small::multiply_seeing(quick, closed, P, full);
-  EXPECT_EQ(plain, quick);
-  small::add_symmetric_product(plain_sum, plain, closed);
-  small::add_symmetric_product_seeing(quick_sum, quick, closed, full);
-  EXPECT_EQ(plain_sum, quick_sum);
-}
-
-/// If only the newest samples are uncertain, the other entries of a product are zero.
-TEST(SmallProducts, OfAPartThatIsUncertainAreThoseOfTheWhole) {
-  const Index n = 7, full = 2, uncertain = 3;
-  MatrixXd F = MatrixXd::Zero(n, n), P = MatrixXd::Zero(n, n);
-  F.topRows(full) = MatrixXd::Random(full, n);
-  for (Index i = full; i < n; ++i) F(i, i - full) = 1.0;
-  const MatrixXd root = MatrixXd::Random(uncertain, uncertain);
-  P.topLeftCorner(uncertain, uncertain) = root * root.transpose();
-  MatrixXd product = MatrixXd::Constant(n, n, 7.0), sum = MatrixXd::Zero(n, n);
-  small::multiply_shifting(product, F, P, full, uncertain);
-  small::add_symmetric_product_shifting(sum, product, F, full, uncertain);
-  EXPECT_TRUE(test::near(sum, MatrixXd(F * P * F.transpose()), 1e-12));
-}
 
 /// Steps both filters through the run and compares all results, relative to the size of each number.
 template <int N, int NY>
@@ -172,6 +134,34 @@ TEST(FixedSizes, CorrelatedNoiseAndImpossibleModes) {
   Trajectory run = test::simulate_bank(bank, 80, 53);
   run.state(1, 20) = std::nan("");
   expect_agreement(bank, run, {}, 1e-11);
+}
+
+/// Older samples are shifted, and those of an exact sensor are known. With entries next to zero in place of zeros the
+/// filter multiplies whole matrices, and its results are the same.
+TEST(FixedSizes, LagsHaveTheResultsOfWholeProducts) {
+  const LinearStructure s{2, 1, true, 3, 2, 1};
+  Trajectory run = test::any_run(s, 60);
+  run.state(1, 20) = std::nan("");
+  run.state.col(40).setConstant(std::nan(""));
+  for (const double r : {0.0, 1e-3}) {
+    Bank bank = test::arx_bank(s, test::stable_theta(s));
+    bank.R.diagonal().setConstant(r);
+    bank.modes.push_back(bank.modes.front());
+    bank.modes[1].model.A.topRows(2) *= 0.5;
+    bank.modes[1].Q *= 0.3;
+    bank.transition = TransitionMatrix::sticky(2, 0.8);
+    bank.initial_probability = VectorXd::Constant(2, 0.5);
+    Bank whole = bank;
+    for (Mode& mode : whole.modes) mode.model.A(5, 5) += 1e-15;
+    whole.C(0, 5) = 1e-300;
+    ASSERT_EQ((FilterModel<any, any>(bank, {}).full_rows), 2);
+    ASSERT_EQ((FilterModel<any, any>(whole, {}).full_rows), 6);
+    const RunEvaluation quick = evaluate_run(bank, run, {}), plain = evaluate_run(whole, run, {});
+    EXPECT_TRUE(test::near(quick.state, plain.state, 1e-12));
+    EXPECT_TRUE(test::near(quick.covariance, plain.covariance, 1e-12));
+    EXPECT_TRUE(test::near(quick.mode_probability, plain.mode_probability, 1e-11));
+    EXPECT_TRUE(test::near(quick.log_density.transpose(), plain.log_density.transpose(), 1e-10));
+  }
 }
 
 /// Impossible modes, diverging modes and no noise. All results must be finite.

@@ -1,4 +1,4 @@
-// Filters of rounded measurements: R of at least q^2 / 12, and scores by masses (predicted.hpp).
+// Filters of rounded measurements: R of at least q^2 / 12, and scores by masses (ModeSignal).
 #include <gtest/gtest.h>
 
 #include <cmath>
