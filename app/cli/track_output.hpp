@@ -7,7 +7,6 @@
 
 #include "app/cli/validity_flags.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/forecast.hpp"
 
 namespace modebank::app {
 

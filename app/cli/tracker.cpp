@@ -24,7 +24,6 @@ double stamp_s(const Trajectory& run, Eigen::Index k) {
 Tracker::Tracker(const OpenArchive& archive, const Config& config, OpenedFilter opened, const Alignment& alignment)
     : config_(config),
       opened_(std::move(opened)),
-      judge_(bank_),
       validity_(load_input_range(archive), opened_.lags, bank_.dt_s),
       reader_(config.data),
       samples_(alignment),
@@ -97,7 +96,8 @@ void Tracker::step(const TimedSample& sample) {
                                            "--data.rate_hz {:.6g} brings the samples to the model's rate",
                                            since_s, bank_.dt_s, 1.0 / bank_.dt_s));
   ++estimates_;
-  writer_->line(run_, sample.time_s, estimate, judge_.judge(estimate),
+  judge_live(bank_.C, estimate, verdict_);
+  writer_->line(run_, sample.time_s, estimate, verdict_,
                 validity_.judge(sample.time_s, sample.input, estimate, filter_.started()), out_);
 }
 

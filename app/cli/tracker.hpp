@@ -17,7 +17,7 @@
 #include "app/cli/validity_flags.hpp"
 #include "app/config/config.hpp"
 #include "filter/step/aligned_samples.hpp"
-#include "filter/step/forecast.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "ident/data/trajectory.hpp"
 
 namespace modebank::app {
@@ -48,7 +48,7 @@ class Tracker {
   OpenedFilter opened_;
   const Bank& bank_ = opened_.bank;
   CombinedFilter& filter_ = opened_.filter;
-  LiveJudge judge_;
+  LiveVerdict verdict_;
   ValidityJudge validity_;
   SampleReader reader_;
   std::optional<EstimateWriter> writer_;

@@ -183,36 +183,26 @@ std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
                                       const std::vector<std::vector<HorizonEvaluation>>& forecasts) {
   std::vector<LeftOutRow> rows;
   if (forecasts.empty() || forecasts.front().empty()) return rows;
-  const std::size_t runs = forecasts.front().size(), horizons = forecasts.front().front().horizons.size();
-  std::vector<std::vector<double>> start;
-  for (std::size_t h = 0; h < horizons; ++h) {
-    std::vector<Eigen::MatrixXd> densities;
-    for (std::size_t r = 0; r < runs; ++r) {
-      densities.emplace_back(std::ssize(filters), forecasts.front()[r].log_density.cols());
-      for (std::size_t f = 0; f < filters.size(); ++f)
-        densities.back().row(static_cast<Index>(f)) = forecasts[f][r].log_density.row(static_cast<Index>(h));
+  std::vector<Trajectory> runs(forecasts.front().size());  // training runs, of which only the lengths count
+  for (std::size_t r = 0; r < runs.size(); ++r) runs[r].state.resize(0, forecasts.front()[r].log_density.cols());
+  const auto tables_of = [&](const std::vector<std::vector<double>>& start) {
+    ForecastTables tables(filters, runs, start);
+    for (std::size_t r = 0; r < runs.size(); ++r) {
+      std::vector<HorizonEvaluation> of_filters;
+      for (const std::vector<HorizonEvaluation>& of_runs : forecasts) of_filters.push_back(of_runs[r]);
+      tables.add(r, of_filters);
     }
-    start.push_back(stacked_weights(densities));
-  }
-  const auto add = [&](const std::string& filter, const std::vector<HorizonEvaluation>& of_runs, std::ptrdiff_t f) {
-    std::vector<HorizonSums> sums;
-    for (const HorizonEvaluation& run : of_runs) pool(sum_horizons(run), sums);
-    for (std::size_t h = 0; h < sums.size(); ++h) {
-      const double N = sums[h].samples > 0 ? static_cast<double>(sums[h].samples) : not_a_number;
-      rows.push_back({filter, sums[h].horizon, sums[h].samples, sums[h].log_density / N,
-                      (sums[h].squared_error / N).sqrt(),
-                      f < 0 ? not_a_number : start[h][static_cast<std::size_t>(f)]});
-    }
+    tables.start_as_trained();
+    return tables;
   };
-  for (std::size_t f = 0; f < filters.size(); ++f) add(filters[f], forecasts[f], static_cast<std::ptrdiff_t>(f));
-  if (filters.size() < 2) return rows;
-  std::vector<HorizonEvaluation> combined;
-  for (std::size_t r = 0; r < runs; ++r) {
-    std::vector<const HorizonEvaluation*> members;
-    for (const std::vector<HorizonEvaluation>& one : forecasts) members.push_back(&one[r]);
-    combined.push_back(combine_forecasts(members, start).predictions);
+  const std::vector<std::vector<double>> start = tables_of({}).start();
+  for (const HorizonRow& row : tables_of(start).horizons()) {
+    if (row.run != "*") continue;
+    rows.push_back({row.filter, row.horizon, row.samples, row.log_score, row.rmse});
+    const std::size_t f = (rows.size() - 1) / forecasts.front().front().horizons.size(),
+                      h = (rows.size() - 1) % forecasts.front().front().horizons.size();
+    if (f < filters.size()) rows.back().start = start.empty() ? 1.0 : start[h][f];
   }
-  add(combined_name, combined, -1);
   return rows;
 }
 

@@ -76,6 +76,7 @@ class ForecastTables {
   /// Sets the starting weights of all runs added later, unless the caller gave weights. They are the most likely
   /// weights on the training runs so far.
   void start_as_trained();
+  const std::vector<std::vector<double>>& start() const { return start_; }
 
   /// Rows of all runs, filter by filter. If there are two or more filters, rows of combined_name follow.
   std::vector<HorizonRow> horizons() const;

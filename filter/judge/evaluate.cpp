@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "filter/step/forecast.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "filter/step/imm_filter.hpp"
 #include "filter/step/samples.hpp"
 #include "ident/data/public_recording.hpp"
@@ -14,37 +14,25 @@ namespace {
 
 using Eigen::Index;
 
-/// Calls visit(vector of a sample, its columns in a run) for the n states and the measured signals.
-template <class Visit>
-void each_vector(const FilterEstimate& sample, Index n, RunEvaluation& e, Visit visit) {
-  visit(sample.prediction.head(n), e.prediction);
-  visit(sample.innovation, e.innovation);
-  visit(sample.innovation_covariance.reshaped(), e.innovation_covariance);
-  visit(sample.state.head(n), e.state);
-  visit(sample.covariance.topLeftCorner(n, n).reshaped(), e.covariance);
-  visit(sample.pit, e.pit);
-  visit(sample.pit_width, e.pit_width);
-  visit(sample.mode_probability_predicted, e.mode_probability_predicted);
-  visit(sample.mode_probability, e.mode_probability);
-}
-
 /// `bank`: any bank with the sizes of the filter's results.
 template <class Filter>
 RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajectory& run) {
   const Index n = bank.structure.states, N = run.samples();
   RunEvaluation e;
+  FilterEstimate sample = filter.estimate();  // of the states of the sample itself
+  sample.prediction.conservativeResize(n);
+  sample.state.conservativeResize(n);
+  sample.covariance.conservativeResize(n, n);
+  each_part(sample, e, [N](const auto& value, Eigen::MatrixXd& values) { values.resize(value.size(), N); });
+  e.pit_width.resize(bank.is_quantised() ? bank.C.rows() : 0, bank.is_quantised() ? N : 0);
   e.nis.resize(N);
   e.log_density.resize(N);
-  each_vector(filter.estimate(), n, e,
-              [N](const auto& value, Eigen::MatrixXd& values) { values.resize(value.size(), N); });
-  if (!bank.is_quantised()) e.pit_width.resize(0, 0);
   for (Index k = 0; k < N; ++k) {
-    const FilterEstimate& sample = filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k));
+    take_measured(filter.step(sample_time_s(run, k), run.input.col(k), run.state.col(k)), sample);
+    each_part(sample, e, [k](const auto& value, Eigen::MatrixXd& values) { values.col(k) = value.reshaped(); });
+    if (bank.is_quantised()) e.pit_width.col(k) = sample.pit_width;
     e.nis(k) = sample.nis;
     e.log_density(k) = sample.log_density;
-    each_vector(sample, n, e, [k](const auto& value, Eigen::MatrixXd& values) {
-      if (values.size() > 0) values.col(k) = value;
-    });
   }
   return e;
 }

@@ -6,8 +6,6 @@
 
 #include "filter/step/combined_filter.hpp"
 #include "ident/base/distributions.hpp"
-#include "ident/base/not_a_number.hpp"
-#include "ident/data/streams.hpp"
 
 namespace modebank {
 
@@ -29,9 +27,15 @@ Index scored_runs(const Densities& densities) {
                        [](const Eigen::VectorXd& run) { return (!run.array().isNaN()).any(); });
 }
 
-const Densities* named(const std::vector<Densities>& all, const std::string& filter) {
-  const auto found = std::find_if(all.begin(), all.end(), [&](const Densities& d) { return d.filter == filter; });
+/// The first of `all` that has this name; null if there is none.
+template <class Named>
+const Named* named(const std::vector<Named>& all, std::string Named::*name, const std::string& wanted) {
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.*name == wanted; });
   return found == all.end() ? nullptr : &*found;
+}
+
+const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
+  return named(finding.gains, &PairedGain::competitor, competitor);
 }
 
 /// Finds the competitor with the highest score. The bank gains least over this competitor.
@@ -51,17 +55,11 @@ bool is_as_good(const PairedGain& of_better) {
   return std::isfinite(of_better.margin) && !of_better.exceeds() && !of_better.ranks_tell();
 }
 
-const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
-  const auto found = std::find_if(finding.gains.begin(), finding.gains.end(),
-                                  [&](const PairedGain& gain) { return gain.competitor == competitor; });
-  return found == finding.gains.end() ? nullptr : &*found;
-}
-
 /// Finds the simplest competitor that is as good as the best competitor and as the bank.
 void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
-  const Densities* leader = named(competitors, finding.best_competitor);
+  const Densities* leader = named(competitors, &Densities::filter, finding.best_competitor);
   for (const char* name : competitor_names) {
-    const Densities* candidate = named(competitors, name);
+    const Densities* candidate = named(competitors, &Densities::filter, name);
     if (finding.best_competitor == name) break;  // the remaining competitors are less simple
     if (!leader || !candidate) continue;
     const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);

@@ -165,8 +165,7 @@ struct FindingInputs {
 ///   and stays are long enough. A stay must last at least five samples and the memory of the model. Shorter stays
 ///   appear with noisy inputs or a delay that differs between runs; competitors do not model these effects.
 /// - no evidence: the gain over a competitor is known to be negligible, since even its upper limit is, or all modes
-/// have
-///   the same theta.
+///   have the same theta.
 /// - cannot tell: all other cases, such as no held-out runs, too few samples for a margin, or modes with unknown
 ///   errors.
 /// If the bank is not significantly better than the best competitor, better_description is the simplest competitor that

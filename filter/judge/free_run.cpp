@@ -1,13 +1,12 @@
 #include "filter/judge/free_run.hpp"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>
 #include <stdexcept>
 #include <utility>
 
-#include "filter/judge/forecast.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/judge/statistics.hpp"
 #include "ident/base/interruption.hpp"
 #include "ident/base/not_a_number.hpp"

@@ -37,9 +37,8 @@ SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::v
 }
 
 double stretch_sum(const std::vector<double>& values, std::size_t first, std::size_t count) {
-  double sum = 0.0;
-  for (std::size_t k = first; k < first + count; ++k) sum += values[k];
-  return sum;
+  const auto begin = values.begin() + static_cast<std::ptrdiff_t>(first);
+  return std::accumulate(begin, begin + static_cast<std::ptrdiff_t>(count), 0.0);
 }
 
 /// Means of adjacent stretches of `length` samples; 0 means whole runs.

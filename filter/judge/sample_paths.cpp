@@ -5,7 +5,6 @@
 #include <boost/random/uniform_01.hpp>
 #include <cmath>
 #include <stdexcept>
-#include <utility>
 
 #include "filter/step/noise_density.hpp"
 #include "ident/base/covariance.hpp"

@@ -5,7 +5,7 @@
 #include <random>
 #include <vector>
 
-#include "filter/judge/forecast.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/bank.hpp"
 #include "filter/step/imm_filter.hpp"
 

@@ -5,8 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "filter/judge/calibration.hpp"
-#include "filter/judge/statistics.hpp"
+#include "filter/judge/diagnostics.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/not_a_number.hpp"
 
@@ -95,26 +94,12 @@ std::vector<SummaryRow> summarize(const std::string& filter, Role role, const st
 }
 
 double ScoreGoal::loss(double score) const {
-  switch (kind) {
-    case Kind::higher:
-      return -score;
-    case Kind::lower:
-      return score;
-    case Kind::nominal:
-      return std::abs(score - nominal);
-  }
-  return not_a_number;
+  if (kind == Kind::nominal) return std::abs(score - nominal);
+  return kind == Kind::higher ? -score : score;
 }
 
 std::string ScoreGoal::text() const {
-  switch (kind) {
-    case Kind::higher:
-      return "higher";
-    case Kind::lower:
-      return "lower";
-    case Kind::nominal:
-      break;
-  }
+  if (kind != Kind::nominal) return kind == Kind::higher ? "higher" : "lower";
   std::array<char, 32> digits{};
   return "nearest " + std::string(digits.data(), std::to_chars(digits.begin(), digits.end(), nominal).ptr);
 }

@@ -256,14 +256,16 @@ Interval binomial_interval(double count, double samples, double level) {
           misses > 0.0 ? beta_quantile(1.0 - beyond, count + 1.0, misses) : 1.0};
 }
 
-ScoreBands::ScoreBands()
-    : near_square_(chi_square_quantile(true_tail, 1.0)), far_square_(chi_square_quantile(1.0 - true_tail, 1.0)) {
-  for (std::size_t b = 0; b < edges_.size(); ++b) edges_[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
-}
-
-ScoreBands::Hits ScoreBands::of(double z) const {
-  Hits hits{{}, z * z > far_square_, z * z < near_square_};
-  for (std::size_t b = 0; b < edges_.size(); ++b) hits.outside[b] = std::abs(z) > edges_[b];
+BandHits band_hits(double z) {
+  static const auto edges = [] {
+    std::array<double, coverage_levels.size()> of_level{};
+    for (std::size_t b = 0; b < of_level.size(); ++b) of_level[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
+    return of_level;
+  }();
+  static const double near_square = chi_square_quantile(true_tail, 1.0),
+                      far_square = chi_square_quantile(1.0 - true_tail, 1.0);
+  BandHits hits{{}, z * z > far_square, z * z < near_square};
+  for (std::size_t b = 0; b < edges.size(); ++b) hits.outside[b] = std::abs(z) > edges[b];
   return hits;
 }
 

@@ -1,6 +1,5 @@
 #include "filter/step/aligned_samples.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -83,13 +82,6 @@ const TimedSample* AlignedSamples::next() {
   return &ready_;
 }
 
-bool AlignedSamples::in_gap(double time_s) const {
-  const auto after = std::lower_bound(samples_.begin(), samples_.end(), time_s,
-                                      [](const Kept& kept, double t) { return kept.at_s < t; });
-  if (after == samples_.end() || after == samples_.begin() || after->at_s == time_s) return false;
-  return after->at_s - std::prev(after)->at_s > gap_periods * spacing_s_;
-}
-
 /// The samples of one signal, from the last one at or before `from_s` to the first one at or after `to_s`.
 Stream AlignedSamples::between(double from_s, double to_s, VectorXd TimedSample::*signal) const {
   auto first = std::upper_bound(samples_.begin(), samples_.end(), from_s,
@@ -114,9 +106,14 @@ void AlignedSamples::average(VectorXd TimedSample::*signal, const std::vector<Ei
 }
 
 void AlignedSamples::measure_at(double time_s) {
-  ready_.measurement = interpolate(between(time_s, time_s, &TimedSample::measurement), VectorXd::Constant(1, time_s));
+  const auto around = [&](double at_s) { return between(at_s, at_s, &TimedSample::measurement); };
+  const auto gapes = [&](const Stream& two) {
+    return two.time_s.size() > 1 && two.time_s(1) - two.time_s(0) > gap_periods * spacing_s_;
+  };
+  ready_.measurement = interpolate(around(time_s), VectorXd::Constant(1, time_s));
   average(&TimedSample::measurement, alignment_.averaged.states, time_s);
-  if (in_gap(time_s) || (averages_ && in_gap(time_s - step_s()))) ready_.measurement.setConstant(not_a_number);
+  if (gapes(around(time_s)) || (averages_ && gapes(around(time_s - step_s()))))
+    ready_.measurement.setConstant(not_a_number);
 }
 
 void AlignedSamples::take_input_of(double time_s) {

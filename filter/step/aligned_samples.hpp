@@ -71,7 +71,6 @@ class AlignedSamples {
   void learn_rate(double since_s);
   double due_s() const;
   double step_s() const { return 1.0 / alignment_.rate_hz; }
-  bool in_gap(double time_s) const;
   Stream between(double from_s, double to_s, Eigen::VectorXd TimedSample::*signal) const;
   void average(Eigen::VectorXd TimedSample::*signal, const std::vector<Eigen::Index>& rows, double time_s);
   void measure_at(double time_s);

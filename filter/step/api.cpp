@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/forecast.hpp"
 #include "modebank/base/eigen.hpp"
 #include "modebank/filter/bank_filter.hpp"
 
@@ -101,14 +100,7 @@ void assign(const Source& source, Matrix& target) {
 }
 
 void assign(const FilterEstimate& source, Estimate& target) {
-  assign(source.prediction, target.prediction);
-  assign(source.innovation, target.innovation);
-  assign(source.innovation_covariance, target.innovation_covariance);
-  assign(source.state, target.state);
-  assign(source.covariance, target.covariance);
-  assign(source.pit, target.pit);
-  assign(source.mode_probability_predicted, target.mode_probability_predicted);
-  assign(source.mode_probability, target.mode_probability);
+  each_part(source, target, [](const auto& from, auto& to) { assign(from, to); });
   target.nis = source.nis;
   target.log_density = source.log_density;
   target.steps = source.steps;

@@ -1,12 +1,10 @@
+
 #include "filter/step/bank.hpp"
 
 #include <Eigen/QR>
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <string>
-#include <utility>
 
 #include "filter/step/noise_density.hpp"
 #include "ident/base/covariance.hpp"

@@ -6,7 +6,6 @@
 #include <utility>
 #include <vector>
 
-#include "filter/step/bank.hpp"
 #include "ident/model/linear_model.hpp"
 #include "ident/model/motion_model.hpp"
 #include "ident/model/step_response.hpp"
@@ -34,12 +33,9 @@ class TransitionMatrix {
   Eigen::MatrixXd matrix_;
 };
 
-/// State-dependent transition probabilities, a multinomial logit (McFadden 1974). In the step from k to k + 1, mode j
-/// follows mode i with the probability
-///   P(j | i, z[k]) = T_ij exp(w_j' (z[k] - reference)) / sum_l T_il exp(w_l' (z[k] - reference)).
-/// z[k] = (x[k], v[k]) holds the state at the start of the step and the acting inputs. Both are known before the
-/// measurement of sample k + 1. Without weights the probabilities are T. A constant added to a column of the weights
-/// has no effect.
+/// State-dependent transition probabilities, a multinomial logit (McFadden 1974; StateDependentTransition in
+/// modebank/filter/bank.hpp). z[k] = (x[k], v[k]) is known before the measurement of sample k + 1. A constant added to
+/// a column of the weights has no effect.
 struct TransitionLogit {
   Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; if empty, T holds for every z
   Eigen::VectorXd reference = {};  ///< d, the value of z for which T holds
@@ -84,11 +80,9 @@ const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionL
   return at.T;
 }
 
-/// One factor on the process noise of every mode. It is a function of the state z and the acting inputs v at the start
-/// of a step, limited to 0.2 to 5:
-///   f = exp(sum_i weights_i log(|directions_i [z; v]| + 0.1) - offset).
-/// With these limits a forecast remains usable if inputs differ from those of the training runs. Without limits, a
-/// factor learned on DART lost 54 nats per sample on other runs.
+/// One factor on the process noise of every mode (NoiseByState in modebank/filter/bank.hpp). With its limits, 0.2 to 5,
+/// a forecast remains usable if inputs differ from those of the training runs. Without limits, a factor learned on DART
+/// lost 54 nats per sample on other runs.
 struct NoiseFactor {
   Eigen::MatrixXd directions;  ///< d x (n + m): directions on which the noise depends. Each is scaled so that
                                ///< directions_i [z; v] has a root mean square of 1 on the training runs

@@ -9,7 +9,8 @@
 
 #include "filter/step/drifting.hpp"
 #include "filter/step/imm_filter.hpp"
-#include "filter/step/samples.hpp"
+#include "ident/base/distributions.hpp"
+#include "ident/base/seed.hpp"
 
 namespace modebank {
 
@@ -46,6 +47,14 @@ void advance(Filter& filter, const Vector& inputs, Index steps) {
 }
 
 }  // namespace
+
+void take_measured(const FilterEstimate& from, FilterEstimate& to) {
+  each_part(from, to, [](const auto& all, auto& part) { part = all.topLeftCorner(part.rows(), part.cols()); });
+  to.pit_width = from.pit_width;
+  to.nis = from.nis;
+  to.log_density = from.log_density;
+  to.steps = from.steps;
+}
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
     : feed_(validated(bank)),
@@ -261,6 +270,33 @@ Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const Fil
     });
   });
   return result;
+}
+
+std::uint64_t pit_seed(std::uint64_t seed, std::string_view run) {
+  return derive_seed(seed, "pit of " + std::string(run));
+}
+
+void draw_pit(std::uint64_t of_run, Index sample, const Eigen::Ref<const Eigen::VectorXd>& width,
+              Eigen::Ref<Eigen::VectorXd> pit) {
+  std::mt19937_64 generator = make_generator(of_run, "pit", static_cast<std::uint64_t>(sample));
+  for (Index i = 0; i < pit.size(); ++i) {
+    const double draw = std::ldexp(static_cast<double>(generator() >> 11U), -53);
+    if (width(i) > 0.0) pit(i) = std::clamp(pit(i) + (draw - 0.5) * width(i), 0.0, 1.0);
+  }
+}
+
+void judge_live(const Eigen::MatrixXd& C, const FilterEstimate& estimate, LiveVerdict& verdict) {
+  static const double interval_quantile = normal_quantile(0.975);  // normal quantile for 95 % intervals
+  verdict.predicted.noalias() = C.lazyProduct(estimate.prediction);
+  verdict.lower = verdict.upper = verdict.predicted;
+  verdict.alarm = false;
+  constexpr double alarm_tail = 0.0005;  // tail probability on each side; a correct model has one such sample in 1000
+  for (Index i = 0; i < C.rows(); ++i) {
+    const double half = interval_quantile * std::sqrt(estimate.innovation_covariance(i, i)), pit = estimate.pit(i);
+    verdict.lower(i) -= half;
+    verdict.upper(i) += half;
+    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict.alarm = true;  // false for NaN (a missing signal)
+  }
 }
 
 }  // namespace modebank

@@ -1,8 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "filter/step/bank.hpp"
@@ -31,6 +33,21 @@ struct FilterEstimate {
   double log_density = 0.0;                    ///< nats
   Eigen::Index steps = 0;  ///< number of model steps from the previous sample; 0 if the filter (re)started here
 };
+
+/// Calls visit(part, other part) for the vectors and matrices of an estimate and something with parts of these names.
+template <class Estimate, class Other, class Visit>
+void each_part(Estimate& estimate, Other& other, Visit visit) {
+  visit(estimate.prediction, other.prediction);
+  visit(estimate.innovation, other.innovation);
+  visit(estimate.innovation_covariance, other.innovation_covariance);
+  visit(estimate.state, other.state);
+  visit(estimate.covariance, other.covariance);
+  visit(estimate.pit, other.pit);
+  visit(estimate.mode_probability_predicted, other.mode_probability_predicted);
+  visit(estimate.mode_probability, other.mode_probability);
+}
+/// Copies an estimate to one with the sizes of the measured states alone, which come first.
+void take_measured(const FilterEstimate& from, FilterEstimate& to);
 
 /// Prediction of one later sample, combined over all modes.
 struct StateForecast {
@@ -84,27 +101,20 @@ class BankFilter {
   BankFilter(BankFilter&&) noexcept;
   BankFilter& operator=(BankFilter&&) noexcept;
 
-  /// Processes the next sample in time order. time: NaN means one step after the last sample. input (m): recorded at
-  /// that time. A non-finite input is replaced by its last known value, which is zero at first. measurement (n_y): NaN
-  /// where missing. The first complete measurement starts the filter. Throws std::invalid_argument for other sizes.
+  /// As filter::BankFilter::step. Throws std::invalid_argument for other sizes than m and n_y.
   const FilterEstimate& step(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
                              const Eigen::Ref<const Eigen::VectorXd>& measurement);
   /// The result of the last step.
   const FilterEstimate& estimate() const { return estimate_; }
-  /// Resets the filter; the next complete measurement starts it again.
   void restart();
   bool started() const { return started_; }
 
-  /// Predicts the next `steps` samples, one model step apart. Column i of `inputs` (m x c) is the input recorded at the
-  /// sample i + 1 ahead. Inputs act input_delay samples later, so as many of the last columns as the earliest input is
-  /// late have no effect and may be omitted. Before the filter's start, states are NaN. Throws std::invalid_argument
-  /// for too few inputs, for inputs that are not finite, and for steps below 1.
+  /// As filter::BankFilter::forecast.
   std::vector<StateForecast> forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index steps) const;
 
   /// The complete state between two samples, as numbers that a program can store.
   std::vector<double> snapshot() const;
-  /// Continues from a snapshot, to the bit. Throws std::invalid_argument if the sizes of the snapshot's bank differ, or
-  /// if it has invalid numbers. The filter is then unchanged.
+  /// As filter::BankFilter::restore.
   void restore(std::span<const double> snapshot);
 
  private:
@@ -131,5 +141,27 @@ class BankFilter {
 /// else. Throws the exceptions of check_run; checks no number of the bank, because candidates of an optimiser may be
 /// extreme.
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options);
+
+/// Seed for the draws of one run.
+std::uint64_t pit_seed(std::uint64_t seed, std::string_view run);
+
+/// Draws the transform of a quantised measurement within its interval (ImmFilter::transform). Moves `pit` (n_y) from
+/// the middle of an interval of `width` (n_y) to a uniformly drawn point of the interval. If the model is correct, the
+/// transform is then uniform. The draw depends only on `of_run` (pit_seed) and the sample's number. Continuous signals
+/// (width 0) do not change.
+void draw_pit(std::uint64_t of_run, Eigen::Index sample, const Eigen::Ref<const Eigen::VectorXd>& width,
+              Eigen::Ref<Eigen::VectorXd> pit);
+
+/// Verdict about a live sample, in addition to its estimate.
+struct LiveVerdict {
+  Eigen::VectorXd predicted;     ///< n_y, predicted measurement
+  Eigen::VectorXd lower, upper;  ///< n_y, predicted interval: +- quantile * sqrt(S_ii), by the moments of the mixture
+  bool alarm = false;            ///< whether some signal lies in one of the two tails of probability 0.0005
+};
+
+/// Judges a sample by the filter's own uncertainty. The alarm uses the probability transform, which has the same
+/// distribution for every mixture; the NIS does not. A correct model with one signal has one alarm in 1000 samples.
+/// `C`: the bank's. Does not allocate after the first call.
+void judge_live(const Eigen::MatrixXd& C, const FilterEstimate& estimate, LiveVerdict& verdict);
 
 }  // namespace modebank

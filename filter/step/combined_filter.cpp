@@ -26,14 +26,6 @@ Bank combined_frame(const Bank& bank) {
 
 namespace {
 
-/// The weights of the filters that speak, with sum one. The others have not started, or failed.
-template <class Speaks>
-void share_out(const std::vector<double>& weights, Speaks speaks, std::vector<double>& shares) {
-  double spoken = 0.0;
-  for (std::size_t i = 0; i < weights.size(); ++i) spoken += shares[i] = speaks(i) ? weights[i] : 0.0;
-  for (double& share : shares) share /= spoken;
-}
-
 /// Mean and covariance of the mixture of part(0), part(1), ..., each a mean and a covariance.
 template <class Part>
 void merge(const std::vector<double>& shares, Part part, Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) {
@@ -55,7 +47,10 @@ CombinedFilter::CombinedFilter(std::vector<BankFilter> filters, const std::vecto
       shares_(filters_.size()),
       estimate_(filters_.front().estimate()),
       innovation_(estimate_.innovation.size()) {
-  take_first();
+  const Index n = estimate_.innovation.size();
+  estimate_.prediction.conservativeResize(n);
+  estimate_.state.conservativeResize(n);
+  estimate_.covariance.conservativeResize(n, n);
 }
 
 CombinedFilter::CombinedFilter(BankFilter alone) : combines_(false), weights_(1), innovation_(0) {
@@ -67,7 +62,7 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   if (!combines_) return filters_.front().step(time_s, input, measurement);
   for (std::size_t i = 0; i < filters_.size(); ++i)
     log_densities_[i] = filters_[i].step(time_s, input, measurement).log_density;
-  take_first();
+  take_measured(filters_.front().estimate(), estimate_);  // as it is where this filter starts
   if (estimate_.steps == 0)
     weights_.restart();
   else
@@ -76,32 +71,16 @@ const FilterEstimate& CombinedFilter::step(double time_s, const Eigen::Ref<const
   return estimate_;
 }
 
-/// The first filter's estimate with the measured states alone. It is used as it is where that filter starts.
-void CombinedFilter::take_first() {
-  const FilterEstimate& said = filters_.front().estimate();
-  const Index n = said.innovation.size();
-  estimate_.prediction = said.prediction.head(n);
-  estimate_.innovation = said.innovation;
-  estimate_.innovation_covariance = said.innovation_covariance;
-  estimate_.state = said.state.head(n);
-  estimate_.covariance = said.covariance.topLeftCorner(n, n);
-  estimate_.pit = said.pit;
-  estimate_.pit_width = said.pit_width;
-  estimate_.mode_probability_predicted = said.mode_probability_predicted;
-  estimate_.mode_probability = said.mode_probability;
-  estimate_.nis = said.nis;
-  estimate_.log_density = said.log_density;
-  estimate_.steps = said.steps;
-}
-
 /// Combines the filters with their weights before this sample.
 void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
   FilterEstimate& mixed = estimate_;
   const Index n = mixed.innovation.size();
   const auto said = [&](std::size_t i) -> const FilterEstimate& { return filters_[i].estimate(); };
   mixed.log_density = filter::ForecastWeights::mixed_log_density(weights_.weights(), log_densities_);
-  share_out(
-      weights_.weights(), [&](std::size_t i) { return said(i).prediction.allFinite(); }, shares_);
+  double spoken = 0.0;  // weight of the filters that have started and did not fail
+  for (std::size_t i = 0; i < shares_.size(); ++i)
+    spoken += shares_[i] = said(i).prediction.allFinite() ? weights_.weights()[i] : 0.0;
+  for (double& share : shares_) share /= spoken;
   for (Eigen::VectorXd FilterEstimate::*transform : {&FilterEstimate::pit, &FilterEstimate::pit_width}) {
     (mixed.*transform).setZero();
     for (std::size_t i = 0; i < shares_.size(); ++i)
@@ -117,25 +96,6 @@ void CombinedFilter::mix(const Eigen::Ref<const Eigen::VectorXd>& measurement) {
       },
       mixed.prediction, mixed.innovation_covariance);
   innovation_.observe(mixed.prediction, measurement, mixed);
-}
-
-std::vector<StateForecast> CombinedFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs,
-                                                    Index steps) const {
-  std::vector<StateForecast> mixed = filters_.front().forecast(inputs, steps);
-  if (!combines_) return mixed;
-  std::vector<std::vector<StateForecast>> said;
-  for (const BankFilter& filter : filters_) said.push_back(filter.forecast(inputs, steps));
-  const Index n = estimate_.state.size();
-  std::vector<double> shares(filters_.size());
-  for (std::size_t k = 0; k < mixed.size(); ++k) {
-    share_out(
-        weights_.weights(), [&](std::size_t i) { return said[i][k].state.allFinite(); }, shares);
-    merge(
-        shares,
-        [&](std::size_t i) { return std::pair(said[i][k].state.head(n), said[i][k].covariance.topLeftCorner(n, n)); },
-        mixed[k].state, mixed[k].covariance);
-  }
-  return mixed;
 }
 
 CombinedFilter::Snapshot CombinedFilter::snapshot() const {

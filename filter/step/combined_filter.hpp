@@ -32,8 +32,6 @@ class CombinedFilter {
   const FilterEstimate& estimate() const { return combines_ ? estimate_ : filters_.front().estimate(); }
   bool started() const { return filters_.front().started(); }
   void restart();
-  /// As BankFilter::forecast. The filters that have started keep their present weights. Modes are those of the first.
-  std::vector<StateForecast> forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Eigen::Index steps) const;
 
   struct Snapshot {
     std::vector<std::vector<double>> filters;
@@ -51,7 +49,6 @@ class CombinedFilter {
   FilterEstimate estimate_;
   CombinedInnovation innovation_;
 
-  void take_first();
   void mix(const Eigen::Ref<const Eigen::VectorXd>& measurement);
 };
 

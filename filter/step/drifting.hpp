@@ -198,12 +198,6 @@ class DriftingForecast {
   void bound();
 };
 
-/// theta, as coefficients of scaled regressors, r x n.
-Eigen::MatrixXd scaled_coefficients(const LinearStructure& structure, const Eigen::VectorXd& theta,
-                                    const Eigen::VectorXd& scale);
-/// DriftingModel::direction.
-Eigen::MatrixXd wandering_direction(const Bank& bank);
-
 /// Contracts coefficients of scaled regressors (r x n) so that every root of their polynomial lies inside or on the
 /// unit circle.
 Eigen::MatrixXd contracted(const LinearStructure& structure, const Eigen::VectorXd& scale, Eigen::MatrixXd theta);

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -33,16 +32,8 @@ void add_square(double factor, const X& x, Eigen::MatrixXd& P) {
   for (Index j = 0; j < P.cols(); ++j) P.col(j).tail(P.rows() - j) += factor * x(j) * x.tail(P.rows() - j);
 }
 
-}  // namespace
-
-Eigen::MatrixXd scaled_coefficients(const LinearStructure& s, const Eigen::VectorXd& theta,
-                                    const Eigen::VectorXd& scale) {
-  return scale.asDiagonal() * theta.reshaped(s.regressors(), s.states);
-}
-
-Eigen::MatrixXd wandering_direction(const Bank& bank) {
-  const LinearStructure& s = bank.structure;
-  const Wandering wandering = bank.drift.wandering;
+/// DriftingModel::direction. `theta0`: coefficients of scaled regressors.
+Eigen::MatrixXd wandering_direction(const LinearStructure& s, Wandering wandering, const Eigen::MatrixXd& theta0) {
   if (wandering == Wandering::all) return {};
   Eigen::MatrixXd d = Eigen::MatrixXd::Zero(s.regressors(), s.states);
   if (wandering == Wandering::constant) {
@@ -50,10 +41,12 @@ Eigen::MatrixXd wandering_direction(const Bank& bank) {
     return d;
   }
   const auto inputs = Eigen::seqN(s.dimension(), s.acting_inputs());
-  d(inputs, Eigen::all) = scaled_coefficients(s, bank.theta(0), bank.drift.scale)(inputs, Eigen::all);
+  d(inputs, Eigen::all) = theta0(inputs, Eigen::all);
   d.colwise().normalize();  // an output without input coefficients has no drift
   return d;
 }
+
+}  // namespace
 
 DriftingModel::DriftingModel(const Bank& bank)
     : structure(bank.structure),
@@ -62,8 +55,8 @@ DriftingModel::DriftingModel(const Bank& bank)
       rounding(bank.rounding_variance()),
       scale(bank.drift.scale),
       inverse_scale(scale.cwiseInverse()),
-      theta0(scaled_coefficients(structure, bank.theta(0), scale)),
-      direction(wandering_direction(bank)) {}
+      theta0(scale.asDiagonal() * bank.theta(0).reshaped(structure.regressors(), structure.states)),
+      direction(wandering_direction(structure, bank.drift.wandering, theta0)) {}
 
 DriftingFilter::DriftingFilter(const Bank& bank)
     : model_(bank),

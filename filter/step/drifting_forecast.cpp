@@ -1,9 +1,7 @@
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
 #include "filter/step/drifting.hpp"
-#include "filter/step/imm.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {

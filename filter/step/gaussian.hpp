@@ -192,12 +192,7 @@ void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
 /// Whether every number is finite. Tests the sum of the numbers (terms are far below overflow).
 template <int N>
 bool is_finite(const Gaussian<N>& g) {
-  double sum = 0.0;
-  for (Eigen::Index j = 0; j < g.mean.size(); ++j) {
-    sum += g.mean(j);
-    for (Eigen::Index i = 0; i < g.mean.size(); ++i) sum += g.covariance(i, j);
-  }
-  return std::isfinite(sum);
+  return std::isfinite(g.mean.sum() + g.covariance.sum());
 }
 
 }  // namespace modebank

@@ -10,7 +10,6 @@
 
 #include "filter/step/gaussian.hpp"
 #include "filter/step/kalman.hpp"
-#include "filter/step/model.hpp"
 #include "ident/base/log_two_pi.hpp"
 
 /// The interacting multiple model filter: Blom & Bar-Shalom 1988, "The interacting multiple model algorithm for systems
@@ -19,14 +18,13 @@
 /// five steps are:
 ///   1  mixing probabilities    mixing_weights
 ///   2  mixing                  mix
-///   3  mode-matched filtering  predict, correct (kalman.hpp)
-///   4  mode probabilities      bayes, floor_probabilities
+///   3  mode-matched filtering  predict, take_in (kalman.hpp)
+///   4  mode probabilities      take_in, bayes, floor_probabilities
 ///   5  combination             merge
 /// The book leaves some cases open: modes that T forbids, likelihoods that underflow, missing signals. Comments below
-/// state how each is handled. The functions at the end
-/// combine the steps to those of FilterVariant. Only FilterState persists between calls. Nothing is allocated once
-/// FilterState and FilterStep exist. Call `start` first. For each sample call `predict`, then `update`, or
-/// `skip_measurement` if no signal was measured.
+/// state how each is handled. The functions at the end combine the steps to those of FilterVariant. Only FilterState
+/// persists between calls. Nothing is allocated once FilterState and FilterStep exist. Call `start` first. For each
+/// sample call `predict`, then `update`, or `skip_measurement` if no signal was measured.
 namespace modebank {
 
 /// The state of a filter: one Gaussian per mode, and the mode probabilities.
@@ -78,16 +76,6 @@ void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mea
   mean.setZero();
   for (std::size_t i = 0; i < state.modes.size(); ++i)
     mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
-}
-
-/// The scale of every mode's Q in the step from `state` under the acting inputs `u`: the noise factor.
-/// The factor is evaluated at the combined estimate. This is exact if states are measured exactly.
-template <int N, int NY, class U>
-double noise_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
-                     FilterStep<N, NY>& step) {
-  if (model.noise_factor.empty()) return 1.0;
-  combine_means(state, step.difference);
-  return model.noise_factor.at(step.difference, u);
 }
 
 /// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate. This is exact
@@ -159,18 +147,6 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
   for (; j < weights.cols(); ++j) merge_some<1, N>(parts, weights, j, merged.data() + j, exact);
 }
 
-/// Step 3, after the measurement: updates every mode's estimate with `y` of `sensor`. Computes the mode's log
-/// likelihood log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13) for the available signals.
-template <int N, int NY, class Sensor, class Y>
-void correct(const Sensor& sensor, const Y& y, FilterStep<N, NY>& step, std::vector<Gaussian<N>>& estimates) {
-  const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
-  for (std::size_t h = 0; h < step.kalman.size(); ++h) {
-    step.kalman[h].observe(sensor, y);
-    step.kalman[h].correct(sensor, y, estimates[h]);
-    step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
-  }
-}
-
 /// Step 4: mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16). This is Bayes' rule in the log
 /// domain: posterior_j is proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is factored
 /// out first; so 0/0 by underflow is impossible. Requires at least one possible mode.
@@ -198,11 +174,6 @@ inline void floor_probabilities(Eigen::VectorXd& mu) {
 /// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, for comparison with the paper. Here are
 /// the differences from the IMM.
 namespace salvi2025 {
-
-/// Weights w(k-1)_i T_ij of [S25, eq. 12-13]. Their sum is below one, so mixed states shrink towards zero.
-inline void mixing_weights(const TransitionMatrix& transition, const Eigen::VectorXd& w, MixingWeights& weights) {
-  weights.noalias() = w.asDiagonal() * transition.matrix();
-}
 
 /// The modes' probabilities from log L_j = log N(C xhat_j - z; 0, S_j). As published in [S25, eq. 16], the residual is
 /// that after the update.
@@ -237,13 +208,6 @@ void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
   floor_probabilities(state.mode_probability);
 }
 
-template <int N, int NY, class Y>
-FilterState<N> start(const FilterModel<N, NY>& model, const Y& y) {
-  FilterState<N> state = initial_state(model);
-  start(model, y, state);
-  return state;
-}
-
 /// Start of each mode's prediction, and the mode probabilities before the measurement.
 template <int N, int NY, class U>
 const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
@@ -254,7 +218,8 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
   }
   if (model.variant == FilterVariant::salvi2025) {
     step.predicted_probability = state.mode_probability;
-    salvi2025::mixing_weights(model.transition, state.mode_probability, step.mixing);
+    // Weights w(k-1)_i T_ij of [S25, eq. 12-13]. Their sum is below one, so mixed states shrink towards zero.
+    step.mixing.noalias() = state.mode_probability.asDiagonal() * model.transition.matrix();
   } else {
     mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
                    step.mixing);
@@ -271,7 +236,11 @@ const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const Filte
 template <int N, int NY, class U>
 void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
   const std::vector<Gaussian<N>>& from = mix(model, state, u, step);
-  const double noise_factor = noise_of_step(model, state, u, step);
+  double noise_factor = 1.0;  // evaluated at the combined estimate, like a logit
+  if (!model.noise_factor.empty()) {
+    combine_means(state, step.difference);
+    noise_factor = model.noise_factor.at(step.difference, u);
+  }
   for (std::size_t j = 0; j < model.modes.size(); ++j) {
     step.kalman[j].predict(from[j], model, model.modes[j], u, noise_factor);
     step.kalman[j].expect(model);
@@ -286,11 +255,17 @@ void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
   floor_probabilities(state.mode_probability);
 }
 
-/// Updates with a measurement. `sensor` is the model, or its part for the available signals.
+/// Steps 3 and 4 with a measurement `y` of `sensor`: the model, or its part for the available signals. Log Lambda_j =
+/// log N(y - C x_j; 0, S_j) (11.6.6-13) is that of the available signals.
 template <int N, int NY, class Sensor, class Y>
 double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
                FilterState<N>& state) {
-  correct(sensor, y, step, state.modes);
+  const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
+  for (std::size_t h = 0; h < step.kalman.size(); ++h) {
+    step.kalman[h].observe(sensor, y);
+    step.kalman[h].correct(sensor, y, state.modes[h]);
+    step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
+  }
   if (model.mode_count() == 1) return step.log_likelihood(0);
   const double log_density = bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
   if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);

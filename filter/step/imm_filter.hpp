@@ -3,11 +3,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <tuple>
-#include <vector>
 
 #include "filter/step/imm.hpp"
 #include "filter/step/noise_density.hpp"

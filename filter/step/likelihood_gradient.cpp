@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
-#include <vector>
 
 #include "filter/step/imm.hpp"
 #include "filter/step/samples.hpp"
@@ -17,19 +16,6 @@ template <class Matrix>
 auto symmetric_part(const Matrix& M) {
   return (0.5 * (M + M.transpose())).eval();
 }
-
-/// Derivatives with respect to the filter's state: the estimate of each mode, and the probabilities.
-template <int N>
-struct ByState {
-  std::vector<Gaussian<N>> modes;
-  VectorXd probability;
-
-  ByState(Index n, Index K) : modes(static_cast<std::size_t>(K), Gaussian<N>(n)), probability(VectorXd::Zero(K)) {}
-  void clear() {
-    for (Gaussian<N>& mode : modes) mode = Gaussian<N>(mode.mean.size());
-    probability.setZero();
-  }
-};
 
 /// Stores every step of a stretch. A stretch that is not the last is filtered again before the way back over it.
 template <int N, int NY>
@@ -49,8 +35,9 @@ class ReversePass {
         stretch_length_(std::min(stretch_length(bank), instants_.count())),
         before_(static_cast<std::size_t>(stretch_length_), after_),
         steps_(static_cast<std::size_t>(stretch_length_), FilterStep<N, NY>(model_)),
-        by_(bank.structure.dimension(), bank.mode_count()),
-        by_before_(by_),
+        none_{{after_.modes.size(), Gaussian<N>(bank.structure.dimension())}, VectorXd::Zero(bank.mode_count())},
+        by_(none_),
+        by_before_(none_),
         by_weight_(bank.mode_count(), bank.mode_count()) {
     const Index n = bank.structure.dimension(), K = bank.mode_count();
     moments_.resize(K, n + n * n);
@@ -89,9 +76,10 @@ class ReversePass {
   Index stretch_length_;
   std::vector<FilterState<N>> before_;    ///< before each moment of a stretch
   std::vector<FilterStep<N, NY>> steps_;  ///< to each moment of a stretch
-  ByState<N> by_, by_before_;             ///< derivatives of all later moments
-  VectorXd by_prior_;                     ///< derivatives with respect to the mode probabilities before the measurement
-  MatrixXd by_weight_;                    ///< K x K
+  FilterState<N> none_;                   ///< no derivative
+  FilterState<N> by_, by_before_;  ///< derivatives of all later moments with respect to the estimates and probabilities
+  VectorXd by_prior_;              ///< derivatives with respect to the mode probabilities before the measurement
+  MatrixXd by_weight_;             ///< K x K
   Eigen::Matrix<double, Eigen::Dynamic, moments> moments_;  ///< of the modes before the mixing, K x (n + n^2)
   Eigen::Matrix<double, moments, Eigen::Dynamic> by_moments_, by_moments_before_;
   BankGradient sum_;
@@ -130,9 +118,9 @@ class ReversePass {
     const FilterStep<N, NY>& step = steps_[at];
     if (instant.starts) {  // the mean at the start is the measurement itself
       for (const Gaussian<N>& mode : by_.modes) sum_.start_covariance += mode.covariance;
-      by_.clear();
+      by_ = none_;
     } else {
-      by_prior_ = by_.probability;
+      by_prior_ = by_.mode_probability;
       if (instant.sample >= 0 && step.partial.missing < run_.state.rows())
         back_over_measurement(step, run_.state.col(instant.sample));
       const bool one = model_.mode_count() == 1;
@@ -148,7 +136,8 @@ class ReversePass {
   template <class Y>
   void back_over_measurement(const FilterStep<N, NY>& step, const Y& y) {
     const VectorXd& posterior = after_.mode_probability;
-    const VectorXd by_log = posterior.array() * (1.0 + by_.probability.array() - by_.probability.dot(posterior));
+    const VectorXd by_log =
+        posterior.array() * (1.0 + by_.mode_probability.array() - by_.mode_probability.dot(posterior));
     by_prior_ = (step.predicted_probability.array() >= impossible_probability)
                     .select(by_log.cwiseQuotient(step.predicted_probability), 0.0);
     SignalMatrix by_R = SignalMatrix::Zero(y.size(), y.size());
@@ -214,7 +203,7 @@ class ReversePass {
     }
     by_weight_.noalias() = moments_.lazyProduct(by_moments_);
     by_moments_before_.noalias() = by_moments_.lazyProduct(step.mixing.transpose());
-    by_before_.probability.setZero();
+    by_before_.mode_probability.setZero();
     for (Index i = 0; i < K; ++i) {
       Gaussian<N>& by = by_before_.modes[static_cast<std::size_t>(i)];
       by.covariance = by_moments_before_.col(i).tail(n * n).reshaped(n, n);
@@ -226,7 +215,7 @@ class ReversePass {
       const double mean_by_weight = by_weight_.col(j).dot(step.mixing.col(j));
       const auto by_pair = ((by_weight_.col(j).array() - mean_by_weight) / prior(j) + by_prior_(j)).matrix();
       sum_.transition.col(j) += by_pair.cwiseProduct(before.mode_probability);
-      by_before_.probability += by_pair.cwiseProduct(model_.transition.matrix().col(j));
+      by_before_.mode_probability += by_pair.cwiseProduct(model_.transition.matrix().col(j));
     }
     std::swap(by_, by_before_);
   }

@@ -1,7 +1,6 @@
 #include "filter/step/samples.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <string>
 

@@ -137,24 +137,21 @@ struct RunInstants {
   Eigen::MatrixXd inputs;  ///< m x instants; column t acts on the step to moment t
 
   RunInstants(const Bank& bank, const Trajectory& run) {
-    std::vector<Eigen::VectorXd> acting;
+    std::vector<double> acting;
+    const auto add = [&](const Instant& instant, const Eigen::Map<const Eigen::VectorXd>& v) {
+      instants.push_back(instant);
+      acting.insert(acting.end(), v.data(), v.data() + v.size());
+    };
     for_each_sample(bank, run, [&](const SampleFeed& feed, Eigen::Index k, bool starts) {
-      for (Eigen::Index i = 1; !starts && i < feed.steps(); ++i) add({}, feed.inputs(), acting);
-      add({k, starts, starts ? Eigen::VectorXd(feed.start()) : Eigen::VectorXd()}, feed.inputs(), acting);
+      for (Eigen::Index i = 1; !starts && i < feed.steps(); ++i) add({}, feed.inputs());
+      add({k, starts, starts ? Eigen::VectorXd(feed.start()) : Eigen::VectorXd()}, feed.inputs());
     });
-    inputs.resize(bank.structure.acting_inputs(), std::ssize(acting));
-    for (std::size_t t = 0; t < acting.size(); ++t) inputs.col(static_cast<Eigen::Index>(t)) = acting[t];
+    inputs = Eigen::MatrixXd::Map(acting.data(), bank.structure.acting_inputs(), count());
   }
 
   Eigen::Index count() const { return std::ssize(instants); }
   /// Whether the moment after t belongs to the same stretch.
   bool continues(Eigen::Index t) const { return t + 1 < count() && !instants[static_cast<std::size_t>(t + 1)].starts; }
-
- private:
-  void add(const Instant& instant, const Eigen::VectorXd& v, std::vector<Eigen::VectorXd>& acting) {
-    instants.push_back(instant);
-    acting.push_back(v);
-  }
 };
 
 /// Advances a filter from the previous moment to moment t of a run. Returns the log density of the sample; NaN without

@@ -140,7 +140,8 @@ template <int N, int NY>
 double equations(const Bank& bank, const Trajectory& run) {
   const FilterModel<N, NY> model(bank, {});
   FilterStep<N, NY> step(model);
-  FilterState<N> state = start(model, run.state.col(0));
+  FilterState<N> state = initial_state(model);
+  start(model, run.state.col(0), state);
   double sum = 0.0;
   for (Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);

@@ -70,7 +70,7 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
   run.state = Eigen::MatrixXd::Zero(s.states, samples);
   run.input.resize(s.inputs, samples);
   for (double& u : run.input.reshaped()) u = 2.0 * uniform(generator) - 1.0;
-  const Eigen::MatrixXd theta0 = scaled_coefficients(s, model.theta(0), model.drift.scale);
+  const Eigen::MatrixXd theta0 = DriftingModel(model).theta0;
   Eigen::MatrixXd theta = theta0;
   const auto wander = [&](double variance) {
     for (Index i = 0; i < s.states; ++i)

@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "filter/judge/forecast.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"

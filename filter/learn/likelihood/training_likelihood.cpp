@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/judge/forecast.hpp"
+#include "filter/judge/horizon.hpp"
 
 namespace modebank {
 

@@ -1,5 +1,4 @@
 // Verdicts on filters for simulated data, and the intervals behind these verdicts.
-#include "filter/judge/calibration.hpp"
 
 #include <gtest/gtest.h>
 
@@ -190,17 +189,16 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
 
 /// If the model is correct, each central band contains its nominal share of the samples.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
-  const ScoreBands bands;
   for (const double side : {-1.0, 1.0}) {
-    EXPECT_FALSE(bands.of(side * 0.674489750196).outside[0]);
-    EXPECT_TRUE(bands.of(side * 0.674489750197).outside[0]);
-    EXPECT_FALSE(bands.of(side * 1.959963984540).outside[2]);
-    EXPECT_TRUE(bands.of(side * 1.959963984541).outside[2]);
-    EXPECT_TRUE(bands.of(side * 0.031337).close);  // 2.5 % quantile: the square root of that of chi-square(1),
-                                                   // 0.0313380
-    EXPECT_FALSE(bands.of(side * 0.031339).close);
-    EXPECT_FALSE(bands.of(side * 2.241402).far);  // 97.5 % quantile: 2.2414027
-    EXPECT_TRUE(bands.of(side * 2.241403).far);
+    EXPECT_FALSE(band_hits(side * 0.674489750196).outside[0]);
+    EXPECT_TRUE(band_hits(side * 0.674489750197).outside[0]);
+    EXPECT_FALSE(band_hits(side * 1.959963984540).outside[2]);
+    EXPECT_TRUE(band_hits(side * 1.959963984541).outside[2]);
+    EXPECT_TRUE(band_hits(side * 0.031337).close);  // 2.5 % quantile: the square root of that of chi-square(1),
+                                                    // 0.0313380
+    EXPECT_FALSE(band_hits(side * 0.031339).close);
+    EXPECT_FALSE(band_hits(side * 2.241402).far);  // 97.5 % quantile: 2.2414027
+    EXPECT_TRUE(band_hits(side * 2.241403).far);
   }
 }
 

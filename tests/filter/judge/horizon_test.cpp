@@ -10,7 +10,6 @@
 #include <random>
 #include <vector>
 
-#include "filter/judge/forecast.hpp"
 #include "filter/step/drifting.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/drifting_test_support.hpp"
@@ -155,10 +154,12 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
     model.modes.front().model.A(0, 0) = 0.4;  // unstable
     model.running_noise.horizon_factor = {{2, 3.0}};
     const Trajectory run = simulate_drifting(example_drifting(n, 1, 2), 150, 2);
-    const RunEvaluation one = evaluate_run(model, run, {});
-    const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {1});
-    EXPECT_TRUE(near(ahead.log_density.row(0).transpose(), one.log_density, ahead_digits));
-    EXPECT_TRUE(near(ahead.error[0], one.innovation, ahead_digits));
+    for (const Bank& bank : {model, test::with_levels(model)}) {
+      const RunEvaluation one = evaluate_run(bank, run, {});
+      const HorizonEvaluation ahead = evaluate_horizons(bank, run, {}, {1});
+      EXPECT_TRUE(near(ahead.log_density.row(0).transpose(), one.log_density, ahead_digits));
+      EXPECT_TRUE(near(ahead.error[0], one.innovation, ahead_digits));
+    }
   }
 }
 

@@ -48,7 +48,7 @@ TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
   model.drift.wandering = Wandering::gain;
   model.drift.rates = {0.01, 0.1, 1.0};
   const Trajectory run = simulate_drifting(model, 60, 3);
-  const Eigen::MatrixXd d = wandering_direction(model);
+  const Eigen::MatrixXd d = DriftingModel(model).direction;
   ASSERT_EQ(d.rows(), 4);
   EXPECT_NEAR(d.norm(), 1.0, drift_digits);
   EXPECT_EQ(d(0, 0), 0.0);  // coefficient of the state
@@ -110,7 +110,7 @@ TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
     for (Index t = 0; t < instants.count(); ++t) follow(instants, t, run, filter);
     const Index r = model.structure.regressors(), first = model.structure.first_transition();
     Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.drift.rates.p0;
-    Eigen::MatrixXd b = scaled_coefficients(model.structure, model.theta(0), model.drift.scale) / model.drift.rates.p0;
+    Eigen::MatrixXd b = DriftingModel(model).theta0 / model.drift.rates.p0;
     Eigen::VectorXd h(r);
     for (Index k = first; k < run.transitions(); ++k) {
       h << run.state.col(k), run.state.col(k - 1), run.input.col(k), run.input.col(k - 1), 1.0;
@@ -152,7 +152,7 @@ struct Printed {
   Eigen::VectorXd log_density, prediction;
 };
 Printed printed(const Bank& m, Index output, const Eigen::MatrixXd& h, const Eigen::VectorXd& increments) {
-  const Eigen::VectorXd theta0 = scaled_coefficients(m.structure, m.theta(0), m.drift.scale).col(output);
+  const Eigen::VectorXd theta0 = DriftingModel(m).theta0.col(output);
   Eigen::VectorXd theta = theta0;
   Eigen::MatrixXd P = m.drift.rates.p0 * Eigen::MatrixXd::Identity(h.rows(), h.rows());
   double v = m.noise_variance()(output);

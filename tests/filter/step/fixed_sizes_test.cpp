@@ -5,7 +5,6 @@
 
 #include "filter/step/imm_filter.hpp"
 #include "tests/filter/filter_test_support.hpp"
-#include "tests/filter/free_run_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -134,60 +133,6 @@ TEST(FixedSizes, CorrelatedNoiseAndImpossibleModes) {
   Trajectory run = test::simulate_bank(bank, 80, 53);
   run.state(1, 20) = std::nan("");
   expect_agreement(bank, run, {}, 1e-11);
-}
-
-/// Older samples are shifted, and those of an exact sensor are known. With entries next to zero in place of zeros the
-/// filter multiplies whole matrices, and its results are the same.
-TEST(FixedSizes, LagsHaveTheResultsOfWholeProducts) {
-  const LinearStructure s{2, 1, true, 3, 2, 1};
-  Trajectory run = test::any_run(s, 60);
-  run.state(1, 20) = std::nan("");
-  run.state.col(40).setConstant(std::nan(""));
-  for (const double r : {0.0, 1e-3}) {
-    Bank bank = test::arx_bank(s, test::stable_theta(s));
-    bank.R.diagonal().setConstant(r);
-    bank.modes.push_back(bank.modes.front());
-    bank.modes[1].model.A.topRows(2) *= 0.5;
-    bank.modes[1].Q *= 0.3;
-    bank.transition = TransitionMatrix::sticky(2, 0.8);
-    bank.initial_probability = VectorXd::Constant(2, 0.5);
-    Bank whole = bank;
-    for (Mode& mode : whole.modes) mode.model.A(5, 5) += 1e-15;
-    whole.C(0, 5) = 1e-300;
-    ASSERT_EQ((FilterModel<any, any>(bank, {}).full_rows), 2);
-    ASSERT_EQ((FilterModel<any, any>(whole, {}).full_rows), 6);
-    const RunEvaluation quick = evaluate_run(bank, run, {}), plain = evaluate_run(whole, run, {});
-    EXPECT_TRUE(test::near(quick.state, plain.state, 1e-12));
-    EXPECT_TRUE(test::near(quick.covariance, plain.covariance, 1e-12));
-    EXPECT_TRUE(test::near(quick.mode_probability, plain.mode_probability, 1e-11));
-    EXPECT_TRUE(test::near(quick.log_density.transpose(), plain.log_density.transpose(), 1e-10));
-  }
-}
-
-/// Impossible modes, diverging modes and no noise. All results must be finite.
-TEST(FixedSizes, NeverSaysNaN) {
-  const Bank usual = many_modes(1, 3);
-  Bank dead = usual, exact = usual, unstable = usual, none = usual;
-  dead.initial_probability << 1.0, 0.0, 0.0;
-  dead.transition = TransitionMatrix((MatrixXd(3, 3) << 0.9, 0.1, 0, 0.2, 0.8, 0, 0.5, 0.5, 0).finished());
-  exact.R.setConstant(1e-12);
-  unstable.modes[1].model.A.setConstant(5.0);
-  none.R.setZero();
-  for (Mode& mode : none.modes) mode.Q.setZero();
-  for (const Bank& bank : {dead, exact, unstable, none}) {
-    Trajectory run = test::simulate_bank(usual, 400, 32);
-    run.state(0, 50) = 1e4;
-    run.state(0, 60) = -1e29;
-    run.state.middleCols(100, 200).setConstant(std::nan(""));
-    ImmFilter<1, 1> fixed(bank, {});
-    fixed.start(run.state.col(0));
-    for (Index k = 1; k < run.samples(); ++k) {
-      fixed.predict(run.input.col(k - 1));
-      ASSERT_EQ(std::isfinite(fixed.update(run.state.col(k))), std::isfinite(run.state(0, k))) << "sample " << k;
-      ASSERT_TRUE(fixed.mode_probability().allFinite()) << "sample " << k;
-    }
-  }
-  expect_agreement(dead, test::simulate_bank(dead, 100, 33), {}, 1e-11);
 }
 
 /// Phi(z) to 20 digits (mpmath), far into the lower tail. All modes are equal, so the transform is that of a single

@@ -8,6 +8,7 @@
 #include "filter/step/imm_filter.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
+#include "tests/filter/free_run_test_support.hpp"
 #include "tests/support/allocation_counter.hpp"
 
 namespace modebank {
@@ -59,25 +60,24 @@ TEST(NoAllocation, TheCounterSeesEigenAndOperatorNew) {
   EXPECT_GT(test::allocations, eigen) << by_new.size();
 }
 
-TEST(NoAllocation, TheBankFilter) {
-  for (const Eigen::Index n : {1, 3, 5}) {
-    Bank bank = test::example_bank(n, 2, 3);
-    bank.dt_s = 1.0;
-    Trajectory run = test::simulate_bank(bank, 30, 1);
-    run.time_s.tail(10).array() += 3.0;
-    run.time_s.tail(5).array() += 2.0 * longest_gap_steps;
-    run.state(0, 12) = std::nan("");
-    run_without_allocation(BankFilter(bank, {}), run);
+/// Missing signals, a longer time between two samples and a gap after which the filter starts again.
+TEST(NoAllocation, TheBankFilterOfAnyBank) {
+  std::vector<Bank> banks{test::with_levels(test::example_drifting(2, 1, 1)),
+                          test::with_levels(test::example_drifting(2, 1, 3))};
+  for (const Eigen::Index n : {1, 2, 3, 5}) {
+    const Bank bank = test::example_bank(n, 2, 3);
+    Bank rounded = bank;
+    rounded.quantum.setConstant(n, 0.02);
+    if (n > 1) rounded.quantum(1) = 0.0;
+    banks.insert(banks.end(), {bank, rounded, with_logit(bank)});
   }
-}
-
-TEST(NoAllocation, TheBankFilterOfRoundedSignals) {
-  for (const Eigen::Index n : {1, 3}) {
-    Bank bank = test::example_bank(n, 2, 3);
-    bank.quantum.setConstant(n, 0.02);
-    if (n > 1) bank.quantum(1) = 0.0;
-    Trajectory run = test::simulate_bank(bank, 30, 1);
-    run.state(0, 12) = std::nan("");
+  for (Bank& bank : banks) {
+    bank.dt_s = 1.0;
+    Trajectory run = test::any_run(bank.structure, 60);
+    run.time_s.tail(20).array() += 3.0;
+    run.time_s.tail(10).array() += 2.0 * longest_gap_steps;
+    run.state(0, 20) = std::nan("");
+    run.state.col(25).setConstant(std::nan(""));
     run_without_allocation(BankFilter(bank, {}), run);
   }
 }
@@ -89,25 +89,6 @@ TEST(NoAllocation, EveryVariantAndSize) {
     step_without_allocation<2, 2>(test::example_bank(2, 2, 3), options);
     step_without_allocation<3, 3>(test::example_bank(3, 2, 3), options);
     step_without_allocation<-1, -1>(test::example_bank(5, 2, 3), options);
-  }
-}
-
-/// The transition matrix of a logit is recomputed at every step.
-TEST(NoAllocation, NorWithATransitionLogit) {
-  const Bank bank = with_logit(test::example_bank(2, 2, 3));
-  step_without_allocation<2, 2>(bank, {});
-  step_without_allocation<-1, -1>(with_logit(test::example_bank(5, 2, 3)), {});
-  const Trajectory run = test::simulate_bank(bank, 30, 1);
-  run_without_allocation(BankFilter(bank, {}), run);
-}
-
-TEST(NoAllocation, DriftingFilterStepsWithoutAny) {
-  for (const Eigen::Index lags : {1, 3}) {
-    const Bank model = test::with_levels(test::example_drifting(2, 1, lags));
-    Trajectory run = test::simulate_drifting(model, 60, 1);
-    run.state(0, 20) = std::nan("");
-    run.state.col(25).setConstant(std::nan(""));
-    run_without_allocation(BankFilter(model, {}), run);
   }
 }
 

@@ -173,7 +173,8 @@ template <int N, int NY>
 std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   const FilterModel<N, NY> model(bank, options);
   FilterStep<N, NY> step(model);
-  FilterState<N> state = start(model, run.state.col(0));
+  FilterState<N> state = initial_state(model);
+  start(model, run.state.col(0), state);
   std::vector<double> numbers;
   for (Eigen::Index k = 1; k < run.samples(); ++k) {
     predict(model, state, run.input.col(k - 1), step);

@@ -1,10 +1,8 @@
-// Live samples: starts, missing signals, uneven times, and continuing from a snapshot.
+// Live samples: starts, missing signals, uneven times.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <stdexcept>
-#include <utility>
 #include <vector>
 
 #include "filter/judge/evaluate.hpp"
@@ -129,37 +127,6 @@ TEST(TimeSteps, AVeryLongTimeAndOneThatGoesBackAreNewStarts) {
     EXPECT_TRUE(std::isnan(all.log_density(7)));
     EXPECT_TRUE(near(all.state.rightCols(5), fresh.state, 0.0));
     EXPECT_TRUE(near(all.log_density.tail(5), fresh.log_density, 0.0));
-  }
-}
-
-TEST(BankFilter, ARefusedSnapshotChangesNothing) {
-  const Bank bank = example_bank(2, 1, 3);
-  const Trajectory run = simulate_bank(bank, 20, 14), other = simulate_bank(bank, 20, 15);
-  const auto stepped = [&](const Trajectory& by, Eigen::Index samples) {
-    BankFilter filter(bank, {});
-    for (Eigen::Index k = 0; k < samples; ++k) filter.step(by.time_s(k), by.input.col(k), by.state.col(k));
-    return filter;
-  };
-  const std::vector<double> good = stepped(other, 7).snapshot();
-  const std::size_t end = good.size();  // ... inputs (1 x 1), measurements (2 x 1), samples, whole, time
-  const std::vector<std::pair<std::size_t, double>> spoil = {
-      {1, 2.0},                 // started
-      {4, std::nan("")},        // a mean
-      {6, 3.0},                 // rows of a covariance
-      {8, -1.0},                // a variance
-      {end - 8, std::nan("")},  // an input
-      {end - 7, 1.0},           // rows of the measurements
-      {end - 2, 8.0},           // more whole samples than samples
-  };
-  for (const auto& [i, value] : spoil) {
-    BankFilter filter = stepped(run, 10), untouched = stepped(run, 10);
-    std::vector<double> spoilt = good;
-    spoilt[i] = value;
-    EXPECT_THROW(filter.restore(spoilt), std::invalid_argument) << i;
-    const FilterEstimate& a = filter.step(run.time_s(10), run.input.col(10), run.state.col(10));
-    const FilterEstimate& b = untouched.step(run.time_s(10), run.input.col(10), run.state.col(10));
-    EXPECT_EQ(a.log_density, b.log_density) << i;
-    EXPECT_TRUE(near(a.state, b.state, 0.0)) << i;
   }
 }
 
