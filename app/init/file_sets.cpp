@@ -51,7 +51,7 @@ void find_pattern(FileSet& set) {
   const FilePattern matcher("files", "", whole);
   const std::vector<std::string> runs = matcher.runs();
   const bool exact = runs.size() == set.files.size() && std::all_of(runs.begin(), runs.end(), [&](const auto& run) {
-                       return std::find(set.files.begin(), set.files.end(), matcher.path_of(run)) != set.files.end();
+                       return std::ranges::count(set.files, matcher.path_of(run)) > 0;
                      });
   if (!exact) return;
   set.pattern = whole;
@@ -59,8 +59,8 @@ void find_pattern(FileSet& set) {
 }
 
 bool is_of_a_kind(const std::vector<std::string>& a, const std::vector<std::string>& b) {
-  const auto shared = std::count_if(
-      a.begin(), a.end(), [&](const std::string& name) { return std::find(b.begin(), b.end(), name) != b.end(); });
+  const auto shared =
+      std::count_if(a.begin(), a.end(), [&](const std::string& name) { return std::ranges::count(b, name) > 0; });
   // Two instruments of a robot may share a column name (the frame of a gyro and of an odometry). Their files still
   // differ in kind.
   return 5 * shared >= 4 * std::ssize(a) && 5 * shared >= 4 * std::ssize(b);
@@ -96,8 +96,7 @@ std::vector<FileSet> file_sets(const std::vector<std::string>& files) {
       columns.push_back(own);
       sets.emplace_back();
     }
-    if (std::find(sets[at].files.begin(), sets[at].files.end(), path) == sets[at].files.end())
-      sets[at].files.push_back(path);
+    if (std::ranges::count(sets[at].files, path) == 0) sets[at].files.push_back(path);
   }
   for (FileSet& set : sets) find_pattern(set);
   return sets;

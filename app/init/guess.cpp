@@ -20,7 +20,6 @@ constexpr std::size_t most_states = 2, most_inputs = 4;
 
 struct Candidate {
   ChannelPlace place;
-  const SurveyedTable* table;
   const SurveyedChannel* channel;
   NameScore score;  ///< score from all hints
   NameScore named;  ///< score from the name alone
@@ -76,9 +75,9 @@ std::vector<Candidate> candidates_of(const std::vector<SurveyedFile>& files) {
       for (std::size_t c = 0; c < table.channels.size(); ++c) {
         const SurveyedChannel& channel = table.channels[c];
         if (!channel.moves() || channel.counts || channel.name == table.run || !can_be_stated(channel.name)) continue;
-        if (std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end()) continue;
+        if (std::ranges::count(table.time, channel.name) > 0) continue;
         NameScore score = score_name(channel.name, from + table.type);
-        if (!score.ignored) all.push_back({{f, t, c}, &table, &channel, score, score});
+        if (!score.ignored) all.push_back({{f, t, c}, &channel, score, score});
       }
     }
   add_hints(all);
@@ -117,7 +116,7 @@ void guess_inputs_by_place(const std::vector<Candidate>& all, bool by_place, Gue
                                     [&](const Candidate& c) { return same_table(c.place, guess.states.front()); });
   std::vector<std::string> names;
   for (const Candidate& c : all) {
-    const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
+    const bool is_state = std::ranges::count(guess.states, c.place) > 0;
     const bool other = !vector_of(c.channel->name).empty() || !words_of_measured(c.channel->name).empty();
     if (is_state || other || !same_table(c.place, guess.states.front()) || c.score.state > 0) continue;
     if ((!by_place && beside > few && !c.is_held()) || guess.inputs.size() == most_inputs) continue;
@@ -143,7 +142,7 @@ void guess_states(std::vector<Candidate>& all, Guess& guess) {
 void guess_inputs(const std::vector<Candidate>& all, Guess& guess) {
   std::vector<Candidate> acting;
   for (const Candidate& c : all) {
-    const bool is_state = std::find(guess.states.begin(), guess.states.end(), c.place) != guess.states.end();
+    const bool is_state = std::ranges::count(guess.states, c.place) > 0;
     // A channel that the state's instrument measures is not an input.
     const bool beside = same_table(c.place, guess.states.front()) && c.score.input < c.score.state;
     if (!is_state && !beside && c.score.input > 0) acting.push_back(c);
@@ -184,7 +183,7 @@ constexpr auto of_structs = R"py({0}: {1} is one of several recordings; a file e
 for k, v in enumerate(s.loadmat('{0}', simplify_cells=True)['{2}']): s.savemat(f'run_{{k}}.mat', v)")py";
 constexpr auto of_vectors =
     R"py({0}: '{1}' hold vectors: python3 -c "import pandas; d = pandas.read_csv('{0}')
-for c in ['{1}']: d = d.join(d.pop(c).str.strip('[]() ').str.split('[, ]+', expand=True).add_prefix(c + '_'))
+for c in ['{1}']: d = d.join(d.pop(c).str.strip('[]() ').str.split('[;, ]+', expand=True).add_prefix(c + '_'))
 d.to_csv('flat.csv', index=False)")py";
 constexpr auto of_pairs = R"py({0}: '{1}' are times of different signals; a file each: python3 -c "import pandas
 d = pandas.read_csv('{0}'); c = d.columns; i = sorted(map(c.get_loc, ['{1}'])) + [len(c)]
@@ -199,14 +198,15 @@ void refuse_mixed_rows(const std::string& file, const SurveyedTable& table) {
     if (channel.why_text.find_first_of("[(") == 1) vectors.push_back(channel.name);
     if (channel.moves() && !channel.counts && !names_time(channel.name)) numbers.push_back(channel.name);
     if (channel.why_text.ends_with(changing_text) && !names_time(channel.name)) names.push_back(channel.name);
-    const bool clock = words_of_name(channel.name).starts_with(" time ") && channel.check.missing > 0;
-    if (clock && std::ranges::count(clocks, channel.name) == 0) clocks.push_back(channel.name);
+    const bool clock = names_time(channel.name) || words_of_name(channel.name).starts_with(" time ");
+    if (clock && channel.check.missing > 0 && std::ranges::count(clocks, channel.name) == 0)
+      clocks.push_back(channel.name);
   }
   if (!vectors.empty() && vectors.size() >= numbers.size())
     throw DataError(fmt::format(of_vectors, file, fmt::join(vectors, "', '")));
   if (clocks.size() > std::max<std::size_t>(table.time.size(), 1))
     throw DataError(fmt::format(of_pairs, file, fmt::join(clocks, "', '")));
-  if (table.time.size() == 1 && names.size() == 1 && numbers.size() == 1)
+  if (table.time.size() == 1 && !names.empty() && numbers.size() == 1)
     throw DataError(fmt::format(of_names, file, table.time[0], names[0], numbers[0]));
 }
 
@@ -222,7 +222,8 @@ void refuse_mixed(const std::vector<SurveyedFile>& files, const Guess& guess) {
   const auto is_other = [&, columns = table.channels.size()](const SurveyedTable& of) {
     return of.name.starts_with(word) && !of.name.starts_with(own) && of.channels.size() == columns;
   };
-  if (table.type.empty() && (word.ends_with('[') || names_run(word)) && std::ranges::any_of(file.tables, is_other))
+  const bool numbered = word.empty() || word.ends_with('.') || word.ends_with('[') || names_run(word);
+  if (table.type.empty() && numbered && std::ranges::any_of(file.tables, is_other))
     throw DataError(word.ends_with('[') ? fmt::format(of_structs, path, state, word.substr(0, word.size() - 1))
                                         : fmt::format(of_groups, path, state, word.substr(0, word.rfind('.') + 1)));
   // If an input's robot has a topic like the state's, it is another robot.
@@ -237,13 +238,6 @@ void refuse_mixed(const std::vector<SurveyedFile>& files, const Guess& guess) {
   refuse_mixed_rows(path, table);
 }
 
-/// Whether the name is that of a measured speed or rate, and not of a command.
-bool is_measured_motion(const std::vector<SurveyedFile>& files, const ChannelPlace& place) {
-  constexpr int least_of_command = 5;
-  const int points = score_name(channel_at(files, place).name).input;
-  return points > 0 && points < least_of_command;
-}
-
 /// Reason why a channel that a user may expect is not used; empty without a reason.
 std::string why_left(const SurveyedTable& table, const SurveyedChannel& channel) {
   if (!channel.why_text.empty()) return fmt::format("; column {}: {}", channel.name, channel.why_text);
@@ -251,7 +245,7 @@ std::string why_left(const SurveyedTable& table, const SurveyedChannel& channel)
   if (!can_be_stated(channel.name))
     return fmt::format("; column '{}': a configuration cannot contain an empty name or a control character; rename it",
                        printable_name(channel.name));
-  const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+  const bool is_time = std::ranges::count(table.time, channel.name) > 0;
   if (is_time || !score_name(channel.name).ignored) return "";
   return fmt::format(
       "; column {}: the name indicates a time, counter, pose, place or label; rename it if it is a signal",
@@ -292,10 +286,12 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
         return !words_of_measured(channel_at(files, place).name).empty();
       }))
     guess_inputs_by_place(all, by_place, guess);
+  constexpr int least_of_command = 5;  // points; names of measured speeds or rates have fewer
+  const int points = guess.inputs.empty() ? 0 : score_name(channel_at(files, guess.inputs.front()).name).input;
   if (guess.inputs.empty())
     guess.reasons.emplace_back(
         "no channel looks like a command (data.input); modes differ only in the motion of the state itself");
-  else if (!by_place && is_measured_motion(files, guess.inputs.front()))
+  else if (!by_place && points > 0 && points < least_of_command)
     guess.reasons.emplace_back(
         "no command is recorded: measured motion is used instead (data.input); models tell how one follows the other");
   replace_unreachable_commands(files, guess);
@@ -306,7 +302,7 @@ Guess guess_roles(const std::vector<SurveyedFile>& files) {
 
 std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, const Guess& guess) {
   const auto has = [](const std::vector<ChannelPlace>& places, const ChannelPlace& place) {
-    return std::find(places.begin(), places.end(), place) != places.end();
+    return std::ranges::count(places, place) > 0;
   };
   std::vector<ChannelLeft> left;
   for (std::size_t f = 0; f < files.size(); ++f)
@@ -315,12 +311,13 @@ std::vector<ChannelLeft> channels_left(const std::vector<SurveyedFile>& files, c
         const ChannelPlace place{f, t, c};
         const SurveyedTable& table = files[f].tables[t];
         const SurveyedChannel& channel = channel_at(files, place);
-        const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+        const bool is_time = std::ranges::count(table.time, channel.name) > 0;
         const bool is_run = !channel.name.empty() && channel.name == table.run;
         if (is_time || is_run || has(guess.states, place) || has(guess.inputs, place)) continue;
         const NameScore score = score_name(channel.name);
         if (!channel.is_number() && !channel.why_text.empty() && !score.ignored)
-          left.push_back({channel.name, fmt::format("text ({})", channel.why_text)});
+          left.push_back({channel.name, fmt::format("text ({})", channel.why_text),
+                          channel.why_text.find("data.na") == std::string::npos ? 0 : 2});
         if (!channel.moves()) continue;
         const bool beside = same_table(place, guess.states.front());
         const bool with_inputs = !guess.inputs.empty() && same_table(place, guess.inputs.front());

@@ -103,8 +103,8 @@ class Proposer {
         const SurveyedChannel& state = channel(place);
         const Eigen::Index steps = state.values.size() - 1;
         const Eigen::ArrayXd turns = (state.values.tail(steps) - state.values.head(steps)).array().abs() / period;
-        const bool fits = state.check.largest - state.check.least < 1.001 * period;
-        if (fits && (turns > 0.8).any() && !(turns > 0.2 && turns < 0.8).any())
+        const double range = (state.check.largest - state.check.least) / period;
+        if (range > 0.9 && range < 1.001 && (turns > 0.8).any() && !(turns > 0.2 && turns < 0.8).any())
           doubt(
               fmt::format("{0} jumps by {1:.9g}: state data.derive = turned = unwrap({2} * 2 * pi / {1:.9g}) and "
                           "data.state = turned",

@@ -117,15 +117,11 @@ class TableSurvey {
     for (const SurveyedChannel& channel : table.channels)
       if (channel.type == "time" && channel.name.ends_with("receive_time")) typed.push_back({channel.name});
     typed.insert(typed.end(), named.begin(), named.end());
-    for (std::size_t i = 0; i < table.channels.size(); ++i)
-      if (!names_time(table.channels[i].name) && begins_with_time(i)) typed.push_back({table.channels[i].name});
+    for (std::size_t i = 0; i < table.channels.size(); ++i)  // texts that begin with a time, whatever their names
+      if (const auto* texts = std::get_if<std::vector<std::string>>(&columns_[i]);
+          texts != nullptr && !texts->empty() && is_known_time(texts->front()) && !names_time(table.channels[i].name))
+        typed.push_back({table.channels[i].name});
     return typed;
-  }
-
-  /// Whether a text column begins with a time of day or a date. Its name does not matter.
-  bool begins_with_time(std::size_t column) const {
-    const auto* texts = std::get_if<std::vector<std::string>>(&columns_[column]);
-    return texts != nullptr && !texts->empty() && is_known_time(texts->front());
   }
 
   /// If a text column has times of day, the name of the text column beside it that has dates.
@@ -283,8 +279,7 @@ class TableSurvey {
       const std::string& text = (*texts)[k];
       if (text == seen.back()) continue;
       const auto at = static_cast<Eigen::Index>(k);
-      if (!(time_s(at) - time_s(at - 1) > longest_s) || std::find(seen.begin(), seen.end(), text) != seen.end())
-        return false;
+      if (!(time_s(at) - time_s(at - 1) > longest_s) || std::ranges::count(seen, text) > 0) return false;
       seen.push_back(text);
     }
     return seen.size() > 1 && !seen.front().empty();

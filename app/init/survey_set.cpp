@@ -11,7 +11,7 @@ namespace {
 using Names = std::vector<std::string>;
 
 void add_once(Names& names, const std::string& name) {
-  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
+  if (std::ranges::count(names, name) == 0) names.push_back(name);
 }
 
 SurveyedTable* find_table(SurveyedFile& file, const std::string& name) {

@@ -21,7 +21,7 @@ struct Row {
 
 Row row_of(const SurveyedChannel& channel, const SurveyedTable& table) {
   const std::string name = printable_name(channel.name);
-  const bool is_time = std::find(table.time.begin(), table.time.end(), channel.name) != table.time.end();
+  const bool is_time = std::ranges::count(table.time, channel.name) > 0;
   if (channel.type == "time" || is_time) return {name, "", "times"};
   if (!channel.is_number())
     return {name, "", channel.why_text.empty() ? "text" : "text: " + printable_name(channel.why_text)};

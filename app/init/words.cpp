@@ -43,7 +43,7 @@ constexpr std::array state_words{
     Word{" pressure ", 4},    Word{" flow ", 3},     Word{" gz ", 5},
     Word{" heading ", 3},     Word{" yaw ", 2},      Word{" roll rate ", 5},
     Word{" pitch rate ", 5},  Word{" altitude ", 1}, Word{" velocities ", 3},
-    Word{" alt ", 1},         Word{" ewe ", 5},
+    Word{" alt ", 1},         Word{" ewe ", 5},      Word{" pv ", 5},
 };
 
 constexpr std::array input_words{
@@ -56,11 +56,12 @@ constexpr std::array input_words{
     Word{" input ", 6},     Word{" u ", 6},        Word{" u1 ", 6},        Word{" u2 ", 6},
     Word{" u 1 ", 6},       Word{" u 2 ", 6},      Word{" wheel ", 5},     Word{" vel l ", 5},
     Word{" vel r ", 5},     Word{" v l ", 5},      Word{" v r ", 5},       Word{" left ", 4},
-    Word{" right ", 4},     Word{" motor ", 4},    Word{" joy ", 5},       Word{" cur ", 2},
+    Word{" right ", 4},     Word{" motor ", 5},    Word{" joy ", 5},       Word{" cur ", 2},
     Word{" current ", 2},   Word{" linear x ", 2}, Word{" angular z ", 2}, Word{" wz ", 2},
     Word{" speed ", 2},     Word{" vx ", 2},       Word{" rudder ", 7},    Word{" helm ", 6},
     Word{" aileron ", 7},   Word{" elevator ", 7}, Word{" fan ", 6},       Word{" force ", 6},
     Word{" thrust ", 7},    Word{" power ", 5},    Word{" drive ", 4},     Word{" actuator ", 7},
+    Word{" co ", 4},        Word{" op ", 4},       Word{" mv ", 4},        Word{" tau ", 5},
 };
 
 /// Points that all channels of a table get for the table's name.
@@ -87,11 +88,12 @@ constexpr std::array time_names{" time ",      " t ",       " stamp ",   " times
                                 " time ms ",   " time us ", " t block ", " stamp ns ",      " header stamp secs ",
                                 " time min ",  " time h ",  " hours ",   " minutes ",       " datetime ",
                                 " date time ", " date ",    " elapsed ", " uptime ",        " timestamps ",
-                                " micros ",    " millis "};
-constexpr std::array run_names{" run ",     " run id ",   " block ", " trial ",   " episode ", " experiment ",
-                               " segment ", " sequence ", " file ",  " session ", " lap ",     " demo "};
-constexpr std::array set_point_words{" setpoint ", " set point ", " sp ", " desired ",
-                                     " target ",   " reference ", " ref "};
+                                " micros ",    " millis ",  " t ms ",    " t us ",          " t ns "};
+constexpr std::array run_names{" run ",        " run id ",  " block ",    " trial ",     " episode ",
+                               " experiment ", " segment ", " sequence ", " file ",      " session ",
+                               " lap ",        " demo ",    " traj ",     " trajectory "};
+constexpr std::array set_point_words{" setpoint ",  " set point ", " sp ",  " desired ", " target ",
+                                     " reference ", " ref ",       " des ", " soll "};
 
 using Words = std::span<const char* const>;
 
@@ -120,7 +122,8 @@ bool has_axis(std::string_view name, Axis axis, std::initializer_list<const char
 std::string words_of_name(std::string_view name) {
   name = split_unit(name).name;  // words in a unit give no points
   if (const std::size_t slash = name.rfind('/'); slash != std::string_view::npos && slash > 0)
-    if (is_one_of({"V", "mV", "A", "mA", "mA.h", "Ah", "%", "C", "s", "h"}, name.substr(slash + 1)))
+    if (is_one_of({"V", "mV", "A", "mA", "mA.h", "Ah", "W", "Nm", "rpm", "bar", "%", "C", "°C", "K", "s", "ms", "h"},
+                  name.substr(slash + 1)))
       name = name.substr(0, slash);
   std::string words = " ";
   for (std::size_t i = 0; i < name.size(); ++i) {

@@ -81,7 +81,8 @@ matvar_t* follow(matvar_t* v, const std::vector<MatStep>& steps) {
 }
 
 constexpr auto from_modelica = R"py({0} is the result of a Modelica simulator, which is not read: python3 -c "
-import scipy.io, numpy as np; m = scipy.io.loadmat('{0}'); d = m['dataInfo'][1] * (m['dataInfo'][0] != 1)
+import scipy.io, numpy as np; m = scipy.io.loadmat('{0}'); i = m['dataInfo']
+assert len(i) == 4, 'binNormal: save it as binTrans'; d = i[1] * (i[0] != 1)
 head = ';'.join(''.join(c).strip() for c, k in zip(zip(*m['name']), d) if k)
 x = m['data_2'][abs(d[d != 0]) - 1].T * np.sign(d[d != 0])
 np.savetxt('{0}.csv', x, delimiter=';', comments='', header=head)")py";

@@ -189,11 +189,11 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   sink.header_rows = head.dialect.header_rows;
   PreparedText prepared;
   const std::string_view first = text.substr(0, text.find('\n'));
-  const std::size_t again = first.empty() || is_comment(first) ? text.npos : text.find(fmt::format("\n{}\n", first));
+  const std::size_t again = first.empty() || is_comment(first) ? text.npos : text.find(fmt::format("\n{}", first));
   if (head.dialect.header_rows > 0 && again < text.size())
     throw DataError(fmt::format(
         "{0}:{1}: the header again; leave it out: python3 -c \"a = open('{0}').readlines(); "
-        "open('one.csv', 'w').writelines(c for i, c in enumerate(a) if i == {2} or c != a[{2}])\"",
+        "open('one.csv', 'w').writelines(c for i, c in enumerate(a) if i == {2} or c.strip() != a[{2}].strip())\"",
         file, head.dialect.first_line() + 1 + std::ranges::count(text.substr(0, again), '\n'), head.dialect.skipped));
   if (head.dialect.rewritten() || has_late_comment(text)) {
     prepared = prepare_text(text, head.dialect.separator == Separator::blank, head.dialect.first_line());

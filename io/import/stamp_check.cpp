@@ -40,7 +40,7 @@ double median_step(const std::vector<double>& times) {
   std::vector<double> steps;
   for (std::size_t k = 1; k < times.size(); ++k)
     if (times[k] > times[k - 1]) steps.push_back(times[k] - times[k - 1]);
-  return upper_median(std::move(steps));
+  return upper_median(steps);
 }
 
 std::optional<std::size_t> stamp_far_out(const std::vector<std::int64_t>& stamps_ns) {

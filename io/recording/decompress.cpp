@@ -52,21 +52,20 @@ class Bz2Stream {
 class Lz4Stream {
  public:
   Lz4Stream() {
-    if (LZ4F_isError(LZ4F_createDecompressionContext(&context_, LZ4F_VERSION))) throw std::bad_alloc();
+    LZ4F_dctx* made = nullptr;
+    if (LZ4F_isError(LZ4F_createDecompressionContext(&made, LZ4F_VERSION))) throw std::bad_alloc();
+    context_.reset(made);
   }
-  ~Lz4Stream() { LZ4F_freeDecompressionContext(context_); }
-  Lz4Stream(const Lz4Stream&) = delete;
-  Lz4Stream& operator=(const Lz4Stream&) = delete;
 
   Step step(std::string_view packed, char* to, std::size_t room) {
     std::size_t taken = packed.size(), made = room;
-    const std::size_t status = LZ4F_decompress(context_, to, &made, packed.data(), &taken, nullptr);
+    const std::size_t status = LZ4F_decompress(context_.get(), to, &made, packed.data(), &taken, nullptr);
     if (LZ4F_isError(status)) return {0, 0, false, LZ4F_getErrorName(status)};
     return {taken, made, status == 0, {}};
   }
 
  private:
-  LZ4F_dctx* context_ = nullptr;
+  std::unique_ptr<LZ4F_dctx, decltype(&LZ4F_freeDecompressionContext)> context_{nullptr, LZ4F_freeDecompressionContext};
 };
 
 class ZstdStream {

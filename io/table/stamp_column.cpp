@@ -140,7 +140,7 @@ bool StampColumn::Reading::is_even(const std::vector<double>& missing) const {
   }
   if (steps.empty() || *std::min_element(steps.begin(), steps.end()) < 0.0) return steps.empty();
   const double longest = *std::max_element(steps.begin(), steps.end());
-  return longest <= gap_steps * upper_median(std::move(steps));
+  return longest <= gap_steps * upper_median(steps);
 }
 
 std::string StampColumn::complaint(NumberStatus status, std::string_view text) const {

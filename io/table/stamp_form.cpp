@@ -27,7 +27,7 @@ Numbers first_numbers(const std::vector<double>& values) {
     if (!known.empty() && value > known.back()) spacings.push_back(value - known.back());
     known.push_back(value);
   }
-  return {upper_median(known), upper_median(std::move(spacings)), known};
+  return {upper_median(known), upper_median(spacings), known};
 }
 
 bool is_multiple(double value, double of) { return std::fmod(value, of) == 0.0; }

@@ -108,7 +108,7 @@ class Fields(ProgramTest):
 
     def test_a_repeated_header_is_refused_with_its_line(self):
         lines = rows(TIMES, 6)
-        self.write("log.csv", HEAD, *lines[:200], HEAD, *lines[200:])
+        self.write("log.csv", HEAD, *lines[:200], "time,speed,throttle ", *lines[200:])
         self.refused("log.csv", "sys", "log.csv:202")
         self.assertEqual(self.expect("one.csv", 0.05, 370)[2]["rows"], 400)
 
@@ -147,15 +147,15 @@ class Fields(ProgramTest):
         self.refused("log.csv", "pandas", "time_2")
 
     def test_vectors_in_cells_are_refused(self):
-        lines = [re.sub(",(.*),(.*)", r',"[\1 0.5]","[\2, 1]",\2', line) for line in rows(range(400), 13)]
+        lines = [re.sub(",(.*),(.*)", r',"[\1 0.5]","[\2; 1]",\2', line) for line in rows(range(400), 13)]
         self.write("log.csv", "step,observation,action,reward", *lines)
         self.refused("log.csv", "pandas", "observation", "action")
         self.assertIn("observation_0", (self.folder / "flat.csv").read_text().split("\n")[0])
 
     def test_signals_of_one_value_column_are_refused(self):
-        lines = [f"{time},{name},{x[k]:.6f}" for k, time in enumerate(TIMES)
+        lines = [f"{time},{name},{x[k]:.6f},{name[0]}" for k, time in enumerate(TIMES)
                  for name, x in zip(("speed", "throttle"), drive(14))]
-        self.write("log.csv", "time,name,value", *lines)
+        self.write("log.csv", "time,name,value,unit", *lines)
         self.refused("log.csv", "pandas", "value", "name")
         self.expect("wide.csv", 0.05, 370)
 

@@ -105,7 +105,7 @@ class Study(ProgramTest):
         sbatch.chmod(0o700)
         told = modebank(*self.words(self.other, *submit), env=environment, status=1).stderr
         self.assertIn("invalid partition", told)
-        self.study("--study.stage=submit", "--study.slurm_options=--array=0-5%2", env=environment, status=2)
+        self.study("--study.stage=submit", "--study.slurm_options=--arr=0-5%2", env=environment, status=2)
         sbatch.write_text('#!/bin/sh\nprintf "%s\\n" "$@" >> "$0.words"\necho Welcome to node 7\necho "Job 41;c2"\n')
         self.study(*submit, env=environment)
         array, merge = re.findall(r"(?s)--parsable\n.*?\.sh\n", (self.folder / "sbatch.words").read_text())

@@ -114,7 +114,7 @@ void check_request(const SlurmRequest& request) {
         "study.stage = submit needs Slurm, but PATH has no sbatch; with another scheduler run --study.stage run "
         "in any number of processes, then --study.stage merge");
   for (const std::string& option : request.options)
-    if (option.starts_with("--array") || option.starts_with("-a") || option.find_first_of("'\"") != std::string::npos)
+    if (option.starts_with("--ar") || option.starts_with("-a") || option.find_first_of("'\"") != std::string::npos)
       throw ConfigurationError(fmt::format(
           "study.slurm_options: {}: modebank sets --array, and cuts options at blanks in quotes, too", option));
   for (const fs::path& path :
