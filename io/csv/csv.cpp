@@ -189,7 +189,7 @@ Table parse_rows(std::string_view file, std::string_view text, const CsvHead& he
   sink.header_rows = head.dialect.header_rows;
   PreparedText prepared;
   const std::string_view first = text.substr(0, text.find('\n'));
-  const std::size_t again = first.empty() || is_comment(first) ? text.npos : text.find(fmt::format("\n{}", first));
+  const auto again = first.empty() || is_comment(first) ? std::string::npos : text.find(fmt::format("\n{}", first));
   if (head.dialect.header_rows > 0 && again < text.size())
     throw DataError(fmt::format(
         "{0}:{1}: the header again; leave it out: python3 -c \"a = open('{0}').readlines(); "
