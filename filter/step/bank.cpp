@@ -1,4 +1,3 @@
-
 #include "filter/step/bank.hpp"
 
 #include <Eigen/QR>

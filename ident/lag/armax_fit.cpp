@@ -142,8 +142,8 @@ class PredictionErrors {
       const VectorXd start = -Cholesky(information).solve(target);
       e.leftCols(faded) += start.transpose() * by_start_.leftCols(faded);
       if (nats)
-        *nats = (W * start.reshaped(n_, nc_)).squaredNorm() / 2.0 + log_determinant(information) / 2.0 -
-                static_cast<double>(nc_) * log_determinant(W.transpose() * W) / 2.0;
+        *nats = 0.5 * ((W * start.reshaped(n_, nc_)).squaredNorm() + log_determinant(information) -
+                       static_cast<double>(nc_) * log_determinant(W.transpose() * W));
     }
     const MatrixXd found = e.reshaped(n_, nc_ + K);
     for (Index j = 0; j < nc_; ++j) X.middleRows(P + j * n_, n_) = found.middleCols(nc_ - 1 - j, K);
@@ -183,8 +183,7 @@ class PredictionErrors {
     return white;
   }
 
-  /// Rows of derivatives by parameters, of errors, and of derivatives by errors before the start, few samples at a
-  /// time.
+  /// Rows of derivatives by parameters, of errors, and of derivatives by errors before; few samples at a time.
   MatrixXd sums_of(const MatrixXd& X, const MatrixXd& e, const VectorXd& weight, const MatrixXd& W) const {
     constexpr Index most = 256;
     const Index p = n_ * q_, all = p + 1 + s_;
@@ -242,9 +241,11 @@ MatrixXd descend(PredictionErrors& equations, MatrixXd& all, Index noise_lags) {
     for (double h = 1.0; h > 1e-3 && !(gained > 0.0); h /= 2.0) {
       const MatrixXd next = stepped(all, h * step, noise_lags);
       equations.set(next);
-      MatrixXd next_errors = equations.errors(weight, W);
+      const MatrixXd next_errors = equations.errors(weight, W);
       gained = value - log_determinant(mean_product(next_errors, weight));
-      if (gained > 0.0) all = next, errors = std::move(next_errors);
+      if (!(gained > 0.0)) continue;
+      all = next;
+      errors = next_errors;
     }
     if (!(gained > tolerance)) break;
   }

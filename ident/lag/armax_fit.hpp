@@ -25,8 +25,7 @@ struct ArmaxData {
   Index inputs() const { return stretches.front().u.rows(); }
 };
 
-/// Sum of z z' over samples from `first` on. z has state lags, input lags, the constant, lagged residuals, and last the
-/// n targets.
+/// Sum of z z' over samples from `first` on. z: state lags, input lags, the constant, lagged residuals, the n targets.
 Eigen::MatrixXd armax_gram(const ArmaxData& data, const ArmaxOrder& order, const std::vector<Index>& delays,
                            Index first);
 

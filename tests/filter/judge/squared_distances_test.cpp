@@ -48,6 +48,19 @@ TEST(SquaredDistances, TheIntervalIsThatOfTheSum) {
   }
 }
 
+/// If every value occurs twice, the interval is that of half the number of values, apart from the margin.
+TEST(SquaredDistances, RelatedSamplesAreFewer) {
+  std::mt19937_64 generator(1);
+  std::vector<double> once, twice;
+  for (int i = 0; i < 4000; ++i) {
+    once.push_back(static_cast<double>(generator() >> 11));
+    twice.insert(twice.end(), {once.back(), once.back()});
+  }
+  const Interval a = mean_distance_interval(distances_of(once), 1.0, 0.95),
+                 b = mean_distance_interval(distances_of(twice), 1.0, 0.95);
+  EXPECT_NEAR((b.upper - b.lower) / (a.upper - a.lower), 1.0, 0.1);
+}
+
 /// A run of the bank. Each signal is missing independently with this probability.
 Trajectory with_missing(const Bank& bank, double missing, Index samples, std::uint64_t seed) {
   Trajectory run = test::simulate_bank(bank, samples, seed);

@@ -20,7 +20,6 @@ namespace modebank {
 namespace {
 
 using test::bank_of;
-using test::LogOdds;
 using test::near;
 using test::soft;
 using test::state_dependent_runs;

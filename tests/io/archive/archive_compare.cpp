@@ -1,5 +1,4 @@
 // Compares archives field by field: every field becomes a line of text, numbers with all their bits.
-#include <algorithm>
 #include <cstdio>
 #include <cstring>
 #include <optional>
