@@ -15,6 +15,7 @@
 #include "app/text/structure_text.hpp"
 #include "filter/learn/chain/stages.hpp"
 #include "ident/data/stretch.hpp"
+#include "ident/lag/linear_stage.hpp"
 #include "ident/lag/structure_search.hpp"
 #include "io/import/import.hpp"
 
@@ -48,23 +49,21 @@ ArmaxStructure searched_structure(const Archive& archive, const StructureScore& 
 }
 
 /// A fit of one structure; empty where the runs are too short for it.
-std::optional<ArmaxCandidate> fitted(const Recording& recording, const ArmaxStructure& structure) {
-  LinearStageOptions options;
-  options.only = structure;
-  LinearStage stage = find_linear_stage(recording, options);
+std::optional<ArmaxFit> fitted(const Recording& recording, const ArmaxStructure& structure) {
+  LinearStage stage = find_linear_stage(recording, {.only = structure});
   return stage.candidates.empty() ? std::nullopt : std::optional(std::move(stage.candidates.front()));
 }
 
 /// Gain of log score of another structure or recording on the same rows [nats]; -inf where one could not be fitted.
-double gain_of(const std::optional<ArmaxCandidate>& other, const std::optional<ArmaxCandidate>& base) {
-  if (!other || !base || other->fit.rows != base->fit.rows) return -INFINITY;
-  return other->left_out.sum() - base->left_out.sum();
+double gain_of(const std::optional<ArmaxFit>& other, const std::optional<ArmaxFit>& base) {
+  if (!other || !base || other->rows != base->rows) return -INFINITY;
+  return other->left_out.of_part.sum() - base->left_out.of_part.sum();
 }
 
 std::string same_sample_doubt(const Recording& recording, const ArmaxStructure& structure) {
   const std::vector<Index> least = least_delays(recording);
   std::vector<std::string> gains;
-  std::optional<ArmaxCandidate> base;
+  std::optional<ArmaxFit> base;
   for (std::size_t i = 0; i < least.size(); ++i) {
     if (least[i] == 0 || structure.delays[i] == 0) continue;
     if (!base) base = fitted(recording, structure);
@@ -108,19 +107,19 @@ struct Tried {
 
 /// The largest gain by the last input over a few delays.
 Tried try_last_input(Recording recording, const ArmaxStructure& structure) {
-  std::vector<std::optional<ArmaxCandidate>> fits;
+  std::vector<std::optional<ArmaxFit>> fits;
   for (const Index delay : {1, 2, 4, 8}) {
     ArmaxStructure with = structure;
     with.delays.push_back(delay);
     fits.push_back(fitted(recording, with));
   }
   remove_input(recording, recording.input_count() - 1);
-  const std::optional<ArmaxCandidate> base = fitted(recording, structure);
+  const std::optional<ArmaxFit> base = fitted(recording, structure);
   Tried best{-INFINITY, 0};
   for (const auto& fit : fits)
     if (const double gain = gain_of(fit, base); gain > best.gain) {
       best.gain = gain;
-      (base->fit.S.diagonal().cwiseQuotient(fit->fit.S.diagonal())).maxCoeff(&best.moved);
+      base->S.diagonal().cwiseQuotient(fit->S.diagonal()).maxCoeff(&best.moved);
     }
   return best;
 }

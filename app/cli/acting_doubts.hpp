@@ -7,8 +7,8 @@
 #include "app/init/guess.hpp"
 #include "io/archive/archive.hpp"
 
-/// Doubts about what acts on the states, from fits of the linear stage (ident/lag/armax.hpp) to the training runs, at
-/// most 20,000 samples of them. Empty where the stage was not asked for a structure, or skipped.
+/// Doubts about what acts on the states, from fits of the linear stage (ident/lag/linear_stage.hpp) to the training
+/// runs, at most 20,000 samples of them. Empty where the stage was not asked for a structure, or skipped.
 namespace modebank::app {
 
 /// - Inputs by whose value of the same sample the single linear model gains, although a delay of 0 was not let compete,

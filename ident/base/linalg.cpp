@@ -6,6 +6,7 @@
 #include <Eigen/QR>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <vector>
 
 namespace modebank {
 
@@ -19,6 +20,27 @@ ThinSvd thin_svd(const MatrixXd& X) {
 
 VectorXd solve_least_squares(const MatrixXd& A, const VectorXd& b) {
   return Eigen::JacobiSVD<MatrixXd>(A, Eigen::ComputeThinU | Eigen::ComputeThinV).solve(b);
+}
+
+VectorXd nonnegative_least_squares(const MatrixXd& A, const VectorXd& b) {
+  VectorXd x = VectorXd::Zero(A.cols());
+  std::vector<Eigen::Index> used;
+  const double tolerance = 1e-12 * (A.transpose() * b).cwiseAbs().maxCoeff();
+  for (Eigen::Index round = 0; round < 3 * A.cols(); ++round) {
+    VectorXd gradient = A.transpose() * (b - A * x);
+    for (const Eigen::Index j : used) gradient(j) = 0.0;
+    Eigen::Index best = 0;
+    if (A.cols() == 0 || !(gradient.maxCoeff(&best) > tolerance)) break;
+    used.push_back(best);
+    while (!used.empty()) {
+      const VectorXd z = solve_least_squares(A(Eigen::all, used), b), at = x(used);
+      const double step = (z.array() <= 0.0).select(at.array() / (at - z).array(), 1.0).minCoeff();
+      x(used) += step * (z - at);
+      if (step == 1.0) break;
+      std::erase_if(used, [&](Eigen::Index j) { return !(x(j) > 1e-14 * x.maxCoeff()) && ((x(j) = 0.0), true); });
+    }
+  }
+  return x;
 }
 
 VectorXd singular_values(const MatrixXd& square) {

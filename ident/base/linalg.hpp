@@ -19,6 +19,8 @@ struct ThinSvd {
 ThinSvd thin_svd(const Eigen::MatrixXd& X);
 /// The x of minimum norm among all x that minimise |A x - b|.
 Eigen::VectorXd solve_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
+/// The x >= 0 that minimises |A x - b| (Lawson & Hanson 1974, section 23.3).
+Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& A, const Eigen::VectorXd& b);
 /// Singular values of a square matrix, in decreasing order.
 Eigen::VectorXd singular_values(const Eigen::MatrixXd& square);
 

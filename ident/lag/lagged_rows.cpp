@@ -4,8 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "ident/lag/stretch_parts.hpp"
-
 namespace modebank {
 namespace {
 
@@ -115,17 +113,15 @@ LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& r
   rows.intercept = intercept;
   const GatheredRows gathered = gather(recording, widest);
   rows.share = gathered.share;
-  const StretchParts parts = stretch_parts(runs_of(gathered), gathered.runs);
-  const std::vector<Index>& part = parts.part;
-  rows.by_runs = parts.by_runs;
-  rows.parts = parts.count;
-  const Index folds = std::max(Index{1}, std::min(folds_of_parts, rows.parts));
+  rows.parts = stretch_parts(runs_of(gathered), gathered.runs);
+  const std::vector<Index> part = rows.parts.part;
+  const Index folds = std::max(Index{1}, std::min(folds_of_parts, rows.parts.count));
   const auto fold = [&](Index row) { return part[static_cast<std::size_t>(row)] % folds; };
   std::vector<Index> order(part.size());
   std::iota(order.begin(), order.end(), Index{0});
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return fold(a) < fold(b); });
   put_rows(gathered, order, widest.regressors(), rows);
-  for (const Index row : order) rows.part.push_back(part[static_cast<std::size_t>(row)]);
+  for (std::size_t i = 0; i < order.size(); ++i) rows.parts.part[i] = part[static_cast<std::size_t>(order[i])];
   for (Index f = 0; f <= folds; ++f)
     rows.fold_begin.push_back(
         std::partition_point(order.begin(), order.end(), [&](Index row) { return fold(row) < f; }) - order.begin());

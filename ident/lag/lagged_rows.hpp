@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
+#include "ident/lag/stretch_parts.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
@@ -38,11 +39,9 @@ struct LaggedRows {
   bool intercept = false;
   Eigen::MatrixXd X;              ///< N x q, regressors
   Eigen::MatrixXd Y;              ///< N x n, increments
-  std::vector<Index> part;        ///< N, index of the row's run or stretch of a run
   std::vector<Index> fold_begin;  ///< folds + 1, first row of each fold
-  Index parts = 0;
-  bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
-  double share = 0.0;    ///< number of rows of X, as a share of the rows that a one-lag model could use
+  StretchParts parts;             ///< of the rows
+  double share = 0.0;             ///< number of rows of X, as a share of the rows that a one-lag model could use
 
   Index count() const { return X.rows(); }
   Index folds() const { return static_cast<Index>(fold_begin.size()) - 1; }

@@ -6,8 +6,7 @@ namespace modebank {
 
 using Eigen::Index;
 
-StretchParts stretch_parts(std::vector<Index> run, Index runs) {
-  constexpr Index fewest_runs = 6, fewest_parts = 10;
+StretchParts stretch_parts(std::vector<Index> run, Index runs, Index fewest_runs, Index fewest_parts) {
   StretchParts parts{std::move(run), runs, runs >= fewest_runs};
   if (parts.by_runs || runs == 0) return parts;
   const Index stretches = (fewest_parts + runs - 1) / runs;

@@ -12,8 +12,9 @@ struct StretchParts {
   bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
 };
 
-/// Divides rows into parts. With six or more runs, the parts are the runs. Fewer than six runs are cut into at least
-/// ten stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
-StretchParts stretch_parts(std::vector<Eigen::Index> run, Eigen::Index runs);
+/// Divides rows into parts. With `fewest_runs` or more, the parts are the runs. Fewer runs are cut into at least
+/// `fewest_parts` stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
+StretchParts stretch_parts(std::vector<Eigen::Index> run, Eigen::Index runs, Eigen::Index fewest_runs = 6,
+                           Eigen::Index fewest_parts = 10);
 
 }  // namespace modebank

@@ -35,6 +35,23 @@ struct StageLags {
   InputDelays input_delay = 1;
 };
 
+/// Lags of y[k] = sum A_j y[k-j] + sum b_ij u_i[k-d_i-j] + c + e[k] + sum C_j e[k-j]. j counts from 0 for inputs, from
+/// 1 for states and noise. In differences, y and u are differences of successive samples, and c is absent.
+struct ArmaxOrder {
+  bool differences = false;
+  std::ptrdiff_t state_lags = 1, input_lags = 1, noise_lags = 1;
+  bool intercept = true;  ///< whether levels have the constant
+  bool has_constant() const { return intercept && !differences; }
+  bool operator==(const ArmaxOrder&) const = default;
+};
+
+/// A structure with the delay of each input.
+struct ArmaxStructure {
+  ArmaxOrder order;
+  std::vector<std::ptrdiff_t> delays;  ///< m [samples]
+  bool operator==(const ArmaxStructure&) const = default;
+};
+
 /// Scores of one structure (lags and delay) on training runs that were left out.
 struct StructureScore {
   std::ptrdiff_t state_lags = 1;

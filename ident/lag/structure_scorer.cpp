@@ -39,11 +39,29 @@ Transitions rows_without(const LaggedRows& rows, const std::vector<Index>& colum
 
 }  // namespace
 
+VectorXd part_rows_of(const StretchParts& parts) {
+  VectorXd rows = VectorXd::Zero(parts.count);
+  for (const Index part : parts.part) rows(part) += 1.0;
+  return rows;
+}
+
+LeftOutForecast left_out_forecast(const MatrixXd& errors, const StretchParts& parts, const VectorXd& least_scale) {
+  const auto rows = static_cast<double>(errors.rows());
+  LeftOutForecast forecast{VectorXd::Zero(parts.count), VectorXd(errors.cols())};
+  for (Index i = 0; i < errors.cols(); ++i) {
+    forecast.rmse(i) = std::sqrt(errors.col(i).squaredNorm() / rows);
+    const double floor = std::max({least_scale(i), least_share_of_rms * forecast.rmse(i), least_normal_scale});
+    const VectorXd density = fitted_student_log_density(errors.col(i), floor);
+    for (Index k = 0; k < density.size(); ++k) forecast.of_part(parts.part[static_cast<std::size_t>(k)]) += density(k);
+  }
+  forecast.log_score = forecast.of_part.sum() / rows;
+  return forecast;
+}
+
 StructureScorer::StructureScorer(const LaggedRows& rows, const VectorXd& quantum) : rows_(rows) {
   least_scale_ = exact_share * (rows.Y.colwise().squaredNorm() / static_cast<double>(rows.count())).cwiseSqrt();
   for (Index i = 0; i < quantum.size(); ++i) least_scale_(i) = std::max(least_scale_(i), quantum(i) / std::sqrt(12.0));
-  part_rows_ = VectorXd::Zero(rows.parts);
-  for (Index k = 0; k < rows.count(); ++k) part_rows_(rows.part[static_cast<std::size_t>(k)]) += 1.0;
+  part_rows_ = part_rows_of(rows.parts);
   for (Index f = 0; f < rows.folds(); ++f) {
     const Index first = rows.fold_begin[static_cast<std::size_t>(f)];
     const Index count = rows.fold_begin[static_cast<std::size_t>(f) + 1] - first;
@@ -107,17 +125,7 @@ MatrixXd StructureScorer::robust_errors(const LinearStructure& structure, const 
 }
 
 LeftOutForecast StructureScorer::forecast(const MatrixXd& errors) const {
-  LeftOutForecast forecast{VectorXd::Zero(rows_.parts), VectorXd(rows_.states)};
-  VectorXd density = VectorXd::Zero(rows_.count());
-  for (Index i = 0; i < rows_.states; ++i) {
-    const VectorXd of_state = errors.col(i);
-    forecast.rmse(i) = std::sqrt(of_state.squaredNorm() / static_cast<double>(rows_.count()));
-    const double floor = std::max({least_scale_(i), least_share_of_rms * forecast.rmse(i), least_normal_scale});
-    density += fitted_student_log_density(of_state, floor);
-  }
-  for (Index k = 0; k < rows_.count(); ++k) forecast.of_part(rows_.part[static_cast<std::size_t>(k)]) += density(k);
-  forecast.log_score = forecast.of_part.sum() / part_rows_.sum();
-  return forecast;
+  return left_out_forecast(errors, rows_.parts, least_scale_);
 }
 
 LeftOutForecast StructureScorer::least_squares(const LinearStructure& structure) const {

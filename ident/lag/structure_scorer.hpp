@@ -14,8 +14,15 @@ struct LeftOutForecast {
   double log_score = 0.0;   ///< [nats/sample]
 };
 
-/// Cross-validation of structures on the same rows. Forecasts are scored under a Student t distribution, whose scale
-/// and degrees of freedom are fitted to the structure's own errors, separately for each state.
+/// Number of rows of each part.
+Eigen::VectorXd part_rows_of(const StretchParts& parts);
+
+/// Forecasts whose errors (N x n) are `errors`, scored under a Student t distribution, whose scale and degrees of
+/// freedom are fitted to the errors, separately for each state. `least_scale` (n): smallest scale.
+LeftOutForecast left_out_forecast(const Eigen::MatrixXd& errors, const StretchParts& parts,
+                                  const Eigen::VectorXd& least_scale);
+
+/// Cross-validation of structures on the same rows.
 class StructureScorer {
  public:
   /// Holds a reference to `rows`, which must outlive this object. `quantum`: as in Recording.

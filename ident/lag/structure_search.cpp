@@ -182,8 +182,8 @@ FoundStructure settle(const StructureClimb& search, const FitOptions& window) {
   }
   const Lags chosen = smallest_as_good(polished, size, weight);
   FoundStructure found{chosen[0], chosen[1], window.input_delay.with_latest(chosen[2]), search.rows().count(),
-                       search.rows().parts};
-  found.by_runs = search.rows().by_runs;
+                       search.rows().parts.count};
+  found.by_runs = search.rows().parts.by_runs;
   found.structures = static_cast<std::ptrdiff_t>(search.seen().size());
   found.scores = score_table(polished, chosen, weight);
   return found;

@@ -65,10 +65,10 @@ ArmaxFit in_levels(const ArmaxFit& fit) {
 Bank bank_of(const Recording& recording, const ArmaxFit& fit, std::optional<double> variance) {
   std::optional<Eigen::VectorXd> stated_R;
   if (variance) stated_R.emplace(Eigen::VectorXd::Constant(recording.state_count(), *variance));
-  const ArmaxNoise noise = noises(fit, stated_R);
+  const NoiseVariances noise = noise_variances(fit, stated_R);
   // Q of the model's own equation: a level that wanders is noise of the equation with a pole at 1, beside the plant's.
   const ArmaxFit equation = in_levels(fit);
-  const Eigen::VectorXd Q = noises(equation, noise.R).Q;
+  const Eigen::VectorXd Q = noise_variances(equation, noise.R).Q;
   const Parameters own = parameters_of(fit), levels = parameters_of(equation);
   const Index p = levels.structure.parameters();
   Bank bank = bank_frame(recording, levels.structure, noise.R.asDiagonal());

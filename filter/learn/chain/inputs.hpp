@@ -9,7 +9,6 @@
 #include "filter/judge/free_run.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/options.hpp"
-#include "ident/lag/armax.hpp"
 #include "ident/lag/structure.hpp"
 #include "modebank/base/names.hpp"
 #include "modebank/learn/options.hpp"

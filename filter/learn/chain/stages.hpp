@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "filter/learn/chain/chain.hpp"
+#include "ident/lag/linear_stage.hpp"
 
 /// The stages of learning. Each is a function of the data, of earlier results and of its inputs struct. Throws
 /// ConfigurationError for inputs that do not fit the data, and DataError for unusable data.

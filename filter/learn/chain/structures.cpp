@@ -14,7 +14,6 @@
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/refine/structure_score.hpp"
 #include "filter/learn/tuning.hpp"
-#include "ident/base/clustered_error.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/lag/structure_choice.hpp"
 #include "ident/lag/structure_search.hpp"
@@ -179,18 +178,16 @@ bool is_repeated(const Recording& recording) {
   return static_cast<double>(repeated) > most_repeated * static_cast<double>(samples);
 }
 
-StructureScore row_of(const ArmaxCandidate& one, const ArmaxCandidate& best, const Eigen::VectorXd& rows) {
-  const ArmaxOrder& order = one.fit.order;
-  StructureScore row;
-  row.state_lags = order.state_lags;
-  row.input_lags = std::max<Index>(1, order.input_lags);
-  row.input_delay = InputDelays(one.fit.delays).latest();
-  row.noise_lags = order.noise_lags;
-  row.differences = order.differences;
-  row.log_score = one.left_out.sum() / rows.sum();
-  row.loss = one.lost / rows.sum();
-  row.loss_standard_error = clustered_error(best.left_out - one.left_out, rows);
-  row.rmse = one.fit.S.diagonal().cwiseSqrt();
+StructureScore row_of(const ArmaxFit& fit, const StructureLoss& loss) {
+  StructureScore row{fit.order.state_lags,
+                     std::max<Index>(1, fit.order.input_lags),
+                     InputDelays(fit.delays).latest(),
+                     fit.left_out.log_score,
+                     loss.mean,
+                     loss.standard_error,
+                     fit.S.diagonal().cwiseSqrt()};
+  row.noise_lags = fit.order.noise_lags;
+  row.differences = fit.order.differences;
   return row;
 }
 
@@ -217,8 +214,8 @@ void tell_answer(const ArmaxFit& fit, const Recording& recording, const Tell& te
                    list(response.response_s)));
 }
 
-/// The linear stage (ident/lag/armax.hpp) on recordings whose structure is searched as a whole. Empty where it does not
-/// apply, and where the lags of an ARX explain the runs best: then they are searched by least squares.
+/// The linear stage (ident/lag/linear_stage.hpp) on recordings whose structure is searched as a whole. Empty where it
+/// does not apply, and where the lags of an ARX explain the runs best: then they are searched by least squares.
 std::optional<FoundStructure> linear_structure_of(const Recording& recording, const StructureInputs& inputs,
                                                   const Tell& tell) {
   const SearchedLags& searched = inputs.searched;
@@ -234,9 +231,9 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   const double rounding = std::numeric_limits<double>::epsilon() * recording.runs.front().states().norm();
   if (!leaves_enough(recording, fit, searched.most_samples) || fit.S.trace() < rounding * rounding) return {};
   tell_answer(fit, recording, tell);
-  const auto best = std::ranges::min_element(stage.candidates, {}, &ArmaxCandidate::lost);
   FoundStructure found;
-  for (const ArmaxCandidate& one : stage.candidates) found.scores.push_back(row_of(one, *best, stage.rows));
+  for (const ArmaxFit& one : stage.candidates)
+    found.scores.push_back(row_of(one, loss_against(stage.candidates[stage.best].left_out, one.left_out, stage.rows)));
   found.scores[stage.chosen].chosen = true;
   std::ranges::stable_sort(found.scores, std::greater(), &StructureScore::log_score);
   found.input_delay = InputDelays(fit.delays);

@@ -63,8 +63,8 @@ Regression regression(const Recording& recording, const LinearStructure& structu
   return {fit.theta.reshaped(q, n), fit.covariance.diagonal().cwiseSqrt().reshaped(q, n)};
 }
 
-/// Sets the `stay` that is most likely on the training runs; the smallest if several are equal.
-void choose_stay(Bank& bank, const Recording& recording) {
+/// Sets the `stay` that is most likely on the training runs (the smallest of equals); returns the log-likelihood.
+double choose_stay(Bank& bank, const Recording& recording) {
   Bank candidate = bank;
   double best = not_a_number;
   for (const double stay : stays) {
@@ -74,6 +74,7 @@ void choose_stay(Bank& bank, const Recording& recording) {
     best = likelihood;
     bank = candidate;
   }
+  return best;
 }
 
 /// One motion with Huber's theta and this number of noise scales.
@@ -130,8 +131,10 @@ Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recordi
     mode.Q.diagonal().head(n) = lowest * std::pow(step, static_cast<double>(j)) * Q;
     bank.modes.push_back(mode);
   }
-  choose_stay(bank, recording);
-  return bank;
+  const double likelihood = choose_stay(bank, recording);
+  if (baseline.R_standard_error.isZero(0.0)) return bank;  // R is stated
+  const Bank exact = learn_noise_only(recording, structure, Eigen::MatrixXd::Zero(n, n), factor);
+  return training_log_likelihood(exact, recording, FilterOptions{}) > likelihood ? exact : bank;
 }
 
 namespace {

@@ -192,7 +192,7 @@ TEST(Baseline, RecoversTwoStates) {
 TEST(Baseline, OfDifferencesHasAPoleAtOneAndTheirAnswer) {
   Recording recording = simulated(single_filter(-0.3, 0.04, 0.01), 1, 30);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
-  ArmaxFit fit{{true, 1, 2, 1}, {3}, Eigen::RowVector3d(0.9, 0.05, 0.01), -0.5 * one, one, {}, 1000};
+  ArmaxFit fit{{{true, 1, 2, 1}, {3}}, Eigen::RowVector3d(0.9, 0.05, 0.01), -0.5 * one, one, {}, 1000};
   fit.covariance = Eigen::Matrix4d::Identity();
   const Bank bank = bank_of(recording, fit, {});
   const Eigen::Vector<double, 5> levels(0.9, -0.9, 0.05, -0.04, -0.01);  // less 1 for the increment
@@ -200,7 +200,7 @@ TEST(Baseline, OfDifferencesHasAPoleAtOneAndTheirAnswer) {
   EXPECT_NEAR(bank.modes[0].standard_error(3), std::sqrt(2.0), 1e-15);
   EXPECT_NEAR(bank.modes[0].response.value.gain(0, 0), 0.6, 1e-9);
   recording.inputs.clear();
-  fit = {{true, 1, 0, 1}, {}, 0.9 * one, -0.5 * one, one, Eigen::Matrix2d::Identity(), 1000};
+  fit = {{{true, 1, 0, 1}, {}}, 0.9 * one, -0.5 * one, one, Eigen::Matrix2d::Identity(), 1000};
   EXPECT_TRUE(near(bank_of(recording, fit, {}).theta(0), levels.head(2), 1e-15));
 }
 

@@ -1,9 +1,8 @@
 // One linear model by prediction errors: against scipy, and on plants whose truth is known.
-#include "ident/lag/armax.hpp"
-
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
+#include "ident/lag/linear_stage.hpp"
 #include "tests/ident/ident_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -45,8 +44,8 @@ Recording simulate(const Heater& heater, std::uint64_t seed) {
 }
 
 const ArmaxFit& fit_of(const LinearStage& stage, const ArmaxOrder& order) {
-  for (const ArmaxCandidate& candidate : stage.candidates)
-    if (candidate.fit.order == order) return candidate.fit;
+  for (const ArmaxFit& candidate : stage.candidates)
+    if (candidate.order == order) return candidate;
   throw std::out_of_range("no such candidate");
 }
 
@@ -75,7 +74,7 @@ TEST(Armax, EqualsScipy) {
       golden << golden_rows(expected["theta"]), golden_rows(expected["C"]);
       EXPECT_TRUE(near((all - golden).cwiseQuotient(golden_rows(expected["standard_error"])), 0.0 * all, 0.01)) << name;
       EXPECT_TRUE(near(fit.S, golden_rows(expected["S"]), 1e-6)) << name;
-      const ArmaxNoise noise = noises(fit);
+      const NoiseVariances noise = noise_variances(fit);
       EXPECT_TRUE(near(noise.R, golden_rows(expected["R"]), 2e-5)) << name;
       EXPECT_TRUE(near(noise.Q, golden_rows(expected["Q"]), 2e-5)) << name;
     }
@@ -96,7 +95,7 @@ TEST(Armax, OutliersDoNotDecide) {
   const ArmaxFit fit = fit_of(find_linear_stage(simulate(heater, 2)), {false, 1, 1, 1});
   EXPECT_NEAR(fit.theta(0, 1) / (1.0 - fit.theta(0, 0)), heater.gain, 0.01 * heater.gain);
   EXPECT_NEAR(-1.0 / std::log(fit.theta(0, 0)), heater.time_s, 0.02 * heater.time_s);
-  EXPECT_LT(noises(fit).R(0), 0.05);
+  EXPECT_LT(noise_variances(fit).R(0), 0.05);
 }
 
 TEST(Armax, LagsDoNotReachAcrossGaps) {
@@ -159,7 +158,7 @@ TEST(Armax, LevelsThreadsAndAStatedNoise) {
   EXPECT_TRUE(near(above.fit().theta.leftCols(2), stage.fit().theta.leftCols(2), 1e-7));
   const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   EXPECT_TRUE(same_bits(find_linear_stage(recording).fit().theta, stage.fit().theta));
-  const ArmaxNoise noise = noises(stage.fit(), VectorXd::Constant(1, 0.005));
+  const NoiseVariances noise = noise_variances(stage.fit(), VectorXd::Constant(1, 0.005));
   EXPECT_EQ(noise.R(0), 0.005);
   EXPECT_GT(noise.Q(0), 0.0);
 }
