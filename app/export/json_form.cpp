@@ -185,8 +185,6 @@ OrderedJson transition_json(const ExportedBank& exported) {
        "P(mode j next | mode i now, z) is proportional to T[i][j] exp(w[j] . (z - reference)), z = (x, u) of the step"},
       {"features", features},
       {"weights", matrix_json(bank.transition_logit.weights)},
-      {"standard_error",
-       bank.transition_weight_error.size() > 0 ? matrix_json(bank.transition_weight_error) : OrderedJson(nullptr)},
       {"reference", vector_json(bank.transition_logit.reference)}};
   return result;
 }

@@ -56,7 +56,8 @@ void add_open_parameters(const ExportedBank& exported, std::vector<std::string>&
                                fmt::join(unidentifiable, ", ")));
 }
 
-/// Adds modes whose parameters have no standard errors for another reason: learning with bank.look_ahead gives none.
+/// Adds modes whose parameters have no standard errors for another reason: a fit to predictions several steps ahead
+/// gives none.
 void add_unknown_errors(const ExportedBank& exported, std::vector<std::string>& list) {
   std::vector<std::string> modes;
   for (Index k = 0; k < exported.bank.mode_count(); ++k)
@@ -90,9 +91,6 @@ void add_switches(const Bank& bank, std::vector<std::string>& list) {
   if (error.size() == T.size() && (T.array() < error.array()).any())
     list.push_back(
         fmt::format("standard errors exceed {} of the {} entries of T", (T.array() < error.array()).count(), T.size()));
-  if (!bank.transition_logit.empty() && !bank.transition_weight_error.allFinite())
-    list.emplace_back(
-        "the data do not determine some weights of the state-dependent switches; these weights have no standard error");
 }
 
 }  // namespace

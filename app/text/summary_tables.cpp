@@ -155,15 +155,10 @@ std::string switches_text(const Bank& bank, const std::vector<std::string>& name
   TextTable table(std::move(columns));
   for (Index k = 0; k < bank.mode_count(); ++k) {
     std::vector<std::string> cells{mode_cell(names, k)};
-    for (Index a = 0; a < logit.weights.cols(); ++a)
-      cells.push_back(bank.transition_weight_error.allFinite() && bank.transition_weight_error.size() > 0
-                          ? estimate(logit.weights(k, a), bank.transition_weight_error(k, a))
-                          : fmt::format("{:.4f}", logit.weights(k, a)));
+    for (Index a = 0; a < logit.weights.cols(); ++a) cells.push_back(fmt::format("{:.4f}", logit.weights(k, a)));
     table.add(std::move(cells));
   }
-  return "\nswitches to each mode: log odds per unit of state and input (no error: the data show only that they are "
-         "large)\n" +
-         table.text(width);
+  return "\nswitches to each mode: log odds per unit of state and input\n" + table.text(width);
 }
 
 std::string equations_text(const Archive& archive, int width) {

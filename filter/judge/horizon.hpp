@@ -15,7 +15,7 @@
 #include "ident/data/trajectory.hpp"
 #include "modebank/filter/options.hpp"
 
-/// Predictions some samples ahead along a recorded run. Horizons, free runs and look-ahead learning all make them here.
+/// Predictions some samples ahead along a recorded run. Horizons and free runs make them here.
 namespace modebank {
 
 /// A prediction of the n_y measured signals some steps ahead, with known inputs and no further measurements.

@@ -32,7 +32,7 @@ struct RefineTuning {
   /// Probability that any proposal is accepted if the model needs no addition.
   double taken_by_chance = 0.05;
   /// Number of proposals for one configuration. The proposals are: number of modes, prior, measurement noise, noise by
-  /// input, transitions by state, look-ahead.
+  /// input, transitions by state, a fit over a horizon.
   int proposals = 7;
 
   // The prior.
@@ -64,29 +64,9 @@ struct RefineTuning {
   std::ptrdiff_t iterations_after_screening =
       10;  ///< number of iterations after a removal, in which the other modes adapt; equal to the first checkpoint
 
-  // Look-ahead learning.
-
-  /// Weights of the prior towards one motion, in transitions. All are tried for the best start.
-  std::array<double, 5> theta_transitions{3.0, 30.0, 300.0, 3e3, 3e5};
-  std::ptrdiff_t one_motion_iterations = 20;  ///< iterations with one theta, for the prior towards one motion
-
-  // Switching by state and input.
-  double weight_width = 30.0;  ///< prior sd of the weights in units of the regressors' standard deviation. With the
-                               ///< largest, a border is a thirtieth of a standard deviation wide
-  std::array<double, 2> other_weight_widths{3.0, 300.0};  ///< tried after the number of modes has been chosen
-  double little_memory_sd = 0.1;  ///< prior sd of log odds, tried with the chosen width; with a small value the
-                                  ///< previous mode hardly matters
-
   // Measurement noise.
   double least_R_share = 1e-9;  ///< smallest R in refinement, as a share of the global residual variance; it is
                                 ///< negligible
-
-  /// Starting values for the searches for R, as shares of the mean Q. They are below a half, because R enters Q twice.
-  /// A single start at 5 % could miss an R of 1 % of Q, or of many times Q.
-  std::array<double, 4> R_start_shares{0.05, 0.005, 0.2, 0.45};
-  /// Starting value for the search for R together with theta. This search runs if R = 0 is most likely with the theta
-  /// of exact states.
-  double R_start_share_with_theta = 0.2;
   /// Nats per sample. Smaller gains do not hold on other runs. (Other seeds change held-out scores by 0.03 to 0.07.)
   double least_gain = 1e-3;
 };

@@ -7,7 +7,6 @@
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/stacked_triangle.hpp"
 #include "ident/fit/motion_fit.hpp"
-#include "ident/fit/unidentifiable_regressors.hpp"
 #include "ident/model/transitions.hpp"
 #include "modebank/base/error.hpp"
 

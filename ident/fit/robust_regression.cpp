@@ -9,9 +9,9 @@
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/covariance.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/fit/minimise.hpp"
 #include "ident/fit/scale.hpp"
-#include "ident/fit/unidentifiable_regressors.hpp"
 
 namespace modebank {
 namespace {
@@ -24,6 +24,10 @@ constexpr double normal_third_quartile = 0.674489750196081743;  // Phi^-1(3/4)
 // relative to the scale; rounding errors are some decades smaller
 constexpr double fit_tolerance = 1e-12;
 constexpr int max_iterations = 1000;
+
+// as a share of the errors' root mean square; needed because more than half of the errors may be zero
+constexpr double least_share_of_rms = 1e-3;
+constexpr double least_normal_scale = 1e-150;  // the square of this value is still a normal floating-point number
 
 double uncentred_scale(const VectorXd& residuals) { return median(residuals.cwiseAbs()) / normal_third_quartile; }
 
@@ -92,6 +96,25 @@ RobustRegression huber_regression(const Transitions& transitions) {
     result.converged = result.converged && fit.converged;
   }
   return result;
+}
+
+Eigen::VectorXd robust_coefficients(const Transitions& transitions, const FitOptions& options) {
+  const RobustLoss loss(options.loss, options.loss_scale);
+  const Decomposition decomposition = decompose(transitions.regressors, excitation_tolerance);
+  const double rms = std::sqrt(residuals(decomposition, transitions.increments).squaredNorm() /
+                               static_cast<double>(transitions.count()));
+  const double robust = robust_scale(transitions, decomposition)(0);
+  Eigen::VectorXd sigma(1);
+  sigma << std::max({std::isfinite(robust) ? robust : 0.0, least_share_of_rms * rms, least_normal_scale});
+  const WhitenedProblem problem = whiten(transitions, decomposition, sigma, nullptr);
+  const Minimum minimum = minimise(problem, loss, options.max_iterations);
+  return minimum.status == FitStatus::failed ? Eigen::VectorXd() : problem.theta(minimum.z);
+}
+
+Eigen::VectorXd robust_or_least_squares(const Transitions& transitions, const FitOptions& options) {
+  Eigen::VectorXd robust = robust_coefficients(transitions, options);
+  if (robust.size() > 0 && robust.allFinite()) return robust;
+  return solve(decompose(transitions.regressors, excitation_tolerance), transitions.increments);
 }
 
 }  // namespace modebank

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 
+#include "ident/fit/options.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
@@ -21,5 +22,11 @@ struct RobustRegression {
 /// Rank-deficient regressors (excitation_tolerance) give the minimum-norm solution. Throws std::invalid_argument
 /// without transitions or with entries that are not finite.
 RobustRegression huber_regression(const Transitions& transitions);
+
+/// Coefficients of a regression of one response, with the loss and scale of a window fit. Empty if the fit fails. If
+/// the regressors are rank deficient, the solution has minimum norm.
+Eigen::VectorXd robust_coefficients(const Transitions& transitions, const FitOptions& options);
+/// The result of robust_coefficients; if that fails, the least-squares coefficients.
+Eigen::VectorXd robust_or_least_squares(const Transitions& transitions, const FitOptions& options);
 
 }  // namespace modebank

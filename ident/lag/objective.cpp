@@ -4,10 +4,10 @@
 #include <cmath>
 #include <vector>
 
+#include "ident/base/linalg.hpp"
 #include "ident/data/trajectory.hpp"
 #include "ident/fit/constants.hpp"
 #include "ident/fit/scale.hpp"
-#include "ident/lag/delayed_regression.hpp"
 
 namespace modebank {
 
@@ -31,6 +31,23 @@ VectorXd averaging_times(const VectorXd& time_s, double first_s, double last_s, 
     t += period_s;
   }
   return Eigen::Map<const VectorXd>(times.data(), static_cast<Index>(times.size()));
+}
+
+/// Subtracts the weighted means of the rows.
+MatrixXd centred(const MatrixXd& values, const VectorXd& weights) {
+  const VectorXd mean = values * weights / weights.sum();
+  return values.colwise() - mean;
+}
+
+/// Minimum-norm weighted least-squares coefficients of Y = B X, n x m. Directions in which X hardly varies (relative
+/// eigenvalue of its Gram matrix below 1e-10) get zero coefficients.
+MatrixXd regress_rows(const MatrixXd& X, const MatrixXd& Y, const VectorXd& weights) {
+  constexpr double collinear = 1e-10;
+  const MatrixXd XW = X * weights.asDiagonal();
+  const SymmetricEigen gram = symmetric_eigen(XW * X.transpose());
+  const double floor = collinear * gram.values.maxCoeff();
+  const VectorXd inverse = (gram.values.array() > floor).select(gram.values.cwiseInverse(), 0.0);
+  return (Y * XW.transpose()) * gram.vectors * inverse.asDiagonal() * gram.vectors.transpose();
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "ident/base/linalg.hpp"
-#include "ident/fit/robust_coefficients.hpp"
+#include "ident/fit/robust_regression.hpp"
 #include "ident/lag/student_density.hpp"
 
 namespace modebank {

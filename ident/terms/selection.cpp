@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "ident/base/linalg.hpp"
-#include "ident/fit/robust_coefficients.hpp"
+#include "ident/fit/robust_regression.hpp"
 #include "ident/fit/scale.hpp"
 #include "ident/lag/student_density.hpp"
 #include "ident/model/transitions.hpp"

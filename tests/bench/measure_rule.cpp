@@ -43,8 +43,7 @@ using Draw = std::function<double()>;
 /// Returns the next x. May change `memory`.
 using Motion = std::function<double(Step&, double size, const Draw& normal, const Draw& uniform)>;
 
-Recording simulate(const Motion& motion, double size, double start_memory_sd, Index runs, int seed,
-                   double measurement_sd = 0.0) {
+Recording simulate(const Motion& motion, double size, Index runs, int seed, double measurement_sd = 0.0) {
   std::mt19937_64 generator = modebank::make_generator(static_cast<std::uint64_t>(seed), "measure rule", 0);
   boost::random::normal_distribution<double> gauss;
   boost::random::uniform_01<double> unit;
@@ -52,7 +51,7 @@ Recording simulate(const Motion& motion, double size, double start_memory_sd, In
   Recording recording = modebank::test::empty_recording(1, 1);
   for (Index r = 0; r < runs; ++r) {
     Eigen::MatrixXd x(1, samples), u(1, samples);
-    Step at{0.0, 0.0, start_memory_sd * normal()};
+    Step at{0.0, 0.0, 0.0};
     for (Index k = 0; k < samples; ++k) {
       if (k % 5 == 0) at.u = 2.0 * uniform() - 1.0;
       u(k) = at.u;
@@ -117,14 +116,9 @@ Answer state_dependent_transition(const Recording& recording) {
   return {r.switching.gain, r.switching.gain_standard_error, !r.bank.transition_logit.empty()};
 }
 
-Answer look_ahead(const Recording& recording) {
-  const Refinement r = refined(recording, [](auto& o) { o.look_ahead = 10; });
-  return {r.look_ahead.score - r.look_ahead.score_before, r.look_ahead.gain_standard_error, r.look_ahead.taken};
-}
-
 std::vector<Question> questions() {
-  const auto of = [](Motion motion, double start_memory_sd = 0.0) {
-    return [=](double size, Index runs, int seed) { return simulate(motion, size, start_memory_sd, runs, seed); };
+  const auto of = [](Motion motion) {
+    return [=](double size, Index runs, int seed) { return simulate(motion, size, runs, seed); };
   };
   const Motion two_modes = [](Step& at, double size, const Draw& normal, const Draw& uniform) {
     if (at.memory == 0.0 || uniform() < 0.02) at.memory = at.memory > 0.0 ? -1.0 : 1.0;
@@ -136,18 +130,11 @@ std::vector<Question> questions() {
   const Motion border = [](Step& at, double size, const Draw& normal, const Draw&) {
     return 0.8 * at.x + (at.x > 0.0 ? 0.3 + size : 0.3 - size) * at.u + sd * normal();
   };
-  const Motion hidden = [](Step& at, double size, const Draw& normal, const Draw&) {
-    at.memory = 0.97 * at.memory + 0.24 * normal();
-    return 0.5 * at.x + 0.3 * at.u + size * at.memory + sd * normal();
-  };
-  const auto measured = [](double size, Index runs, int seed) {
-    return simulate(one_motion, 0.0, 0.0, runs, seed, size);
-  };
+  const auto measured = [](double size, Index runs, int seed) { return simulate(one_motion, 0.0, runs, seed, size); };
   return {{"modes", {0.081, 0.061}, of(two_modes), modes},
           {"measurement noise", {0.22, 0.155}, measured, measurement_noise},
           {"noise by input", {0.36, 0.235}, of(noise_follows), noise_by_input},
-          {"transitions by state", {0.069, 0.046}, of(border), state_dependent_transition},
-          {"look-ahead", {0.094, 0.065}, of(hidden, 1.0), look_ahead}};
+          {"transitions by state", {0.069, 0.046}, of(border), state_dependent_transition}};
 }
 
 void print_worth(Index runs) {

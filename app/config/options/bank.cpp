@@ -4,32 +4,6 @@
 #include "app/config/options/sections.hpp"
 
 namespace modebank::app {
-namespace {
-
-/// bank.look_ahead: a number of samples. The word "error" after the number means that squared errors are minimised.
-Option look_ahead_option() {
-  Option result = of_several(
-      "bank.look_ahead", "1 to 1000, and error or nothing", "samples",
-      "longest prediction by which em chooses a bank: the mean log score of predictions 1 to N samples ahead in runs "
-      "left out. With error em chooses by one step, then minimises the squared errors of these predictions where runs "
-      "left out gain (a bank of at most 50 free numbers). Forecasts and free runs use the result");
-  result.set = [](Config& config, const std::string& text) {
-    const bool errors = text.ends_with(" error");
-    Eigen::Index samples = 0;
-    parse_value(boost::trim_copy(errors ? text.substr(0, text.size() - 6) : text), samples);
-    if (samples < 1 || samples > 1000) throw std::invalid_argument("is out of range");
-    config.bank.em.look_ahead = samples;
-    config.bank.em.look_ahead_score = errors ? LookAheadScore::error : LookAheadScore::density;
-  };
-  result.get = [](const Config& config) {
-    return format_value(config.bank.em.look_ahead) +
-           (config.bank.em.look_ahead_score == LookAheadScore::error ? " error" : "");
-  };
-  return result;
-}
-
-}  // namespace
-
 std::vector<Option> bank_options() {
   using enum Stage;
   return {
@@ -67,9 +41,6 @@ std::vector<Option> bank_options() {
             MODEBANK_FIELD(bank.refine))
           .touch("none, for a first look at the data in seconds, or to keep the mixture's own modes", competitors,
                  basic),
-      look_ahead_option().touch("for control: the number of samples that you predict ahead; with error, for free runs "
-                                "whose mean matters more than their band",
-                                competitors),
   };
 }
 

@@ -116,10 +116,7 @@ json switch_weights_of(const Bank& bank) {
   json rows = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     json row = json::array();
-    for (Index a = 0; a < logit.weights.cols(); ++a)
-      row.push_back(bank.transition_weight_error.size() > 0 && bank.transition_weight_error.allFinite()
-                        ? estimate(logit.weights(k, a), bank.transition_weight_error(k, a))
-                        : number(logit.weights(k, a)));
+    for (Index a = 0; a < logit.weights.cols(); ++a) row.push_back(number(logit.weights(k, a)));
     rows.push_back(row);
   }
   return {{"names", regressor_labels(bank.structure, bank.state_names, bank.input_names)}, {"rows", rows}};

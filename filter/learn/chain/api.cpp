@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "filter/learn/chain/chain.hpp"
-#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "ident/data/public_recording.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/fit_windows.hpp"

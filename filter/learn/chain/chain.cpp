@@ -7,7 +7,7 @@
 
 #include "filter/judge/finding.hpp"
 #include "filter/learn/chain/stages.hpp"
-#include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/window_length.hpp"

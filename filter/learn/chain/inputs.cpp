@@ -8,7 +8,7 @@
 
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
-#include "ident/fit/unidentifiable_regressors.hpp"
+#include "ident/fit/global_model.hpp"
 #include "ident/model/parameter_labels.hpp"
 #include "ident/terms/stated_terms.hpp"
 #include "mixture/select.hpp"
@@ -37,11 +37,11 @@ std::optional<StructureInputs> structure_inputs(const LearningOptions& options) 
 }
 
 /// Whether to look for noise that follows the input. All later steps must support such noise. The conditions are: an
-/// IMM; no logit or look-ahead; R is neither given nor estimated in addition to rounding.
+/// IMM; no logit; R is neither given nor estimated in addition to rounding.
 bool noise_may_follow(const LearningOptions& options, const FitOptions& window) {
   const BankOptions& bank = options.bank;
   return refinement_asked(bank, is_linear(window)) == Refine::em && bank.transition != TransitionSource::logit &&
-         !bank.measurement_variance && bank.em.look_ahead == 1 && options.filter.variant == FilterVariant::imm;
+         !bank.measurement_variance && options.filter.variant == FilterVariant::imm;
 }
 
 CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
@@ -60,7 +60,8 @@ CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOpti
 
 BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window) {
   const bool single = options.filter.variant == FilterVariant::kf;
-  BankInputs inputs{window, options.bank, options.other_lags, options.scoring.horizon};
+  BankInputs inputs{window, options.bank, options.other_lags, options.scoring.horizon,
+                    options.scoring.free_run.samples};
   inputs.one_model = single || options.one_model;
   inputs.one_motion = options.competitors && !single;
   inputs.drifting = options.competitors;

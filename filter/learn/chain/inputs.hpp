@@ -106,6 +106,7 @@ struct BankInputs {
   OtherLags lags = {};              ///< of `one_motion`, `drifting` and the linear stage
   std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
                                     ///< sample ahead; `drifting` widens its predictions at these horizons
+  Index simulate = 0;  ///< measured samples at the start of free runs; 0: none, so theta is of one step ahead
   std::optional<FilterOptions> filter = {};  ///< set if learning uses the filter, that is for refinement
   bool one_model = false;                    ///< whether the bank is the baseline
   bool one_motion = true;                    ///< false for a single Kalman filter

@@ -64,7 +64,7 @@ std::vector<LeftOutRow> score_left_out(const StageData& data, const Learning& le
                                        const std::vector<Bank>& banks, const std::vector<Bank>& one_motions) {
   if (!inputs.filter) return {};
   const Stopwatch watch;
-  const std::vector<ValidationSplit> splits = validation_splits(data.part, inputs.bank.em.folds, refine_tuning);
+  const std::vector<ValidationSplit> splits = validation_splits(data.part, inputs.bank.em.folds);
   if (splits.empty() || banks.size() != splits.size() || one_motions.size() != splits.size()) return {};
   std::vector<Index> horizons = inputs.horizon;
   horizons.push_back(1);

@@ -178,23 +178,13 @@ CompetitorsPart learn_competitors(const StageData& data, const WindowFits& windo
 
 namespace {
 
-std::string worth_of(const LookAheadStage& stage) {
-  if (stage.score == stage.score_before) return "accepted without a test, because no runs are left out";
-  const std::string gain =
-      stage.of_errors ? fmt::format("errors on left-out runs change by {:+.1f} %",
-                                    100.0 * (std::sqrt(stage.score / stage.score_before) - 1.0))
-                      : fmt::format("{:.4f} -> {:.4f} nats/sample on left-out runs", stage.score_before, stage.score);
-  return gain + (stage.taken ? "" : ": not taken");
-}
-
 void tell_candidates(const Refinement& refined, const Tell& tell) {
   for (const RefineCandidate& c : refined.candidates)
     tell(Level::detail,
-         fmt::format("refine: {:<12} {:>3} modes, Q prior {}{}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
+         fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
                      "below the best, after {} iterations{}",
-                     c.start, c.modes, c.noise_transitions,
-                     c.theta_transitions > 0.0 ? fmt::format(", to one motion {:g}", c.theta_transitions) : "", c.score,
-                     c.loss, c.loss_standard_error, c.iterations, c.selected ? " (chosen)" : ""));
+                     c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
+                     c.selected ? " (chosen)" : ""));
 }
 
 void tell_measurement(const Refinement& refined, const Tell& tell) {
@@ -219,11 +209,7 @@ void tell_additions(const Refinement& refined, const Tell& tell) {
     tell(Level::progress,
          fmt::format("refine: switching by state and input gains {:.4f} +- {:.4f} nats/sample on left-out runs{}",
                      s.gain, s.gain_standard_error,
-                     s.width > 0.0 ? fmt::format(" (accepted, width {}{})", s.width,
-                                                 std::isinf(s.memory_sd) ? "" : ", the previous mode hardly matters")
-                                   : ": not taken"));
-  if (const LookAheadStage& ahead = refined.look_ahead; ahead.taken || ahead.score != ahead.score_before)
-    tell(Level::progress, "refine: fit to predictions up to bank.look_ahead samples ahead: " + worth_of(ahead));
+                     s.width > 0.0 ? fmt::format(" (accepted, width {})", s.width) : ": not taken"));
 }
 
 }  // namespace
@@ -258,6 +244,9 @@ Refinement learn_one_motion(const StageData& data, const Learning& learned, cons
   Refinement refined = learn_one_motion(recording, one.structure == windows.structure ? windows : own, one.global,
                                         *learned.bank, learned.baseline->R,
                                         std::max(fewest_levels, learned.mixture->mixture.components()), inputs.bank);
+  const Index horizon = *std::max_element(inputs.horizon.begin(), inputs.horizon.end());
+  if (inputs.simulate > 0 && horizon > 1 && fit_horizon(recording, inputs.bank.em, horizon, inputs.simulate, refined))
+    data.tell(Level::progress, fmt::format("one_motion: errors up to {} samples ahead fit free runs better", horizon));
   data.tell(Level::progress,
             fmt::format("one_motion: {} noise levels in {:.2f} s", refined.bank.mode_count(), watch.seconds()));
   return refined;

@@ -13,7 +13,7 @@ namespace modebank {
 /// What every stage takes.
 struct StageData {
   const Recording& recording;
-  const Recording& part;      ///< the part of the training runs that filters learn from (refine/learning_part.hpp)
+  const Recording& part;      ///< the part of the training runs that filters learn from (left_out/folds.hpp)
   const MotionModel* motion;  ///< motion model of the windows; null for linear models
   const Tell& tell;
 };

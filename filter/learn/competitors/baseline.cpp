@@ -9,7 +9,6 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
-#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {

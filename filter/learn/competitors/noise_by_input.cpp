@@ -11,10 +11,8 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/left_out/rule.hpp"
-#include "filter/learn/refine/learning_part.hpp"
 #include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/starts.hpp"
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/fit/constants.hpp"
@@ -108,7 +106,7 @@ Transitions with_terms(Transitions rows, const MotionTerms& terms) {
 /// 0.15 nats per sample on DART's training runs.
 SwitchingRegression switching_noise(const Recording& recording, const TrainingTransitions& transitions) {
   const GlobalModel global = fit_global(recording, transitions.structure);
-  const SwitchingPrior prior = switching_prior(transitions, global, {}, refine_tuning.Q_transitions, refine_tuning);
+  const SwitchingPrior prior = switching_prior(transitions, global, {}, refine_tuning.Q_transitions);
   SwitchingRegression model;
   model.theta = global.theta.replicate(1, std::ssize(noise_levels));
   for (const double level : noise_levels) model.Q.emplace_back(level * prior.noise);

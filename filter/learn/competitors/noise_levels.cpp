@@ -11,7 +11,6 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
-#include "filter/learn/likelihood/training_likelihood.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/sample_quantile.hpp"

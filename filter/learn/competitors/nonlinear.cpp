@@ -5,7 +5,7 @@
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/refine/training_fit.hpp"
+#include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/stretch.hpp"
@@ -163,7 +163,6 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   em.one_theta = true;
   em.state_dependent_transition = false;
   em.restarts = 0;
-  em.look_ahead = 1;
   em.measurement_noise = false;
   em.noise_by_input = false;  // the starts have the factor; one without the left-out runs needs the terms
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);

@@ -11,7 +11,7 @@
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/memberships.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
-#include "filter/learn/refine/learning_part.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"

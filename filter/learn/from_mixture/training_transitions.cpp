@@ -6,7 +6,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "ident/fit/gram.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
@@ -109,7 +108,12 @@ RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::V
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)
     if (weights(k) > negligible) rows.push_back(k);
-  const Eigen::MatrixXd gram = weighted_gram(regressors, residuals, rows, weights(rows).cwiseSqrt());
+  const Eigen::VectorXd root = weights(rows).cwiseSqrt();
+  Eigen::MatrixXd scaled(std::ssize(rows), q + n), gram = Eigen::MatrixXd::Zero(q + n, q + n);
+  for (Index c = 0; c < q; ++c) scaled.col(c) = root.cwiseProduct(regressors.col(c)(rows));
+  for (Index c = 0; c < n; ++c) scaled.col(q + c) = root.cwiseProduct(residuals.col(c)(rows));
+  gram.selfadjointView<Eigen::Lower>().rankUpdate(scaled.transpose());
+  gram.triangularView<Eigen::StrictlyUpper>() = gram.transpose();
   return {gram.topLeftCorner(q, q), gram.topRightCorner(q, n), gram.bottomRightCorner(n, n), weights.sum()};
 }
 

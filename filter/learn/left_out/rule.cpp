@@ -39,18 +39,13 @@ std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
   return best;
 }
 
-bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
-             const RefineTuning& tuning) {
-  const PairedLoss loss = paired_loss(best.log_likelihood, candidate.log_likelihood, samples);
-  return std::isfinite(loss.mean) && !is_worth_it(loss, samples, tuning.most_loss);
-}
-
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
                                  const RefineTuning& tuning) {
   const std::size_t best = best_candidate(candidates);
   std::size_t chosen = best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!as_good(candidates[i], candidates[best], samples, tuning)) continue;
+    const PairedLoss loss = paired_loss(candidates[best].log_likelihood, candidates[i].log_likelihood, samples);
+    if (!std::isfinite(loss.mean) || is_worth_it(loss, samples, tuning.most_loss)) continue;
     const Eigen::Index fewer = candidates[chosen].modes - candidates[i].modes;
     if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[chosen]))) chosen = i;
   }

@@ -32,24 +32,20 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// has expectation one, and Markov's inequality bounds its tail.
 double least_worth(double samples);
 
-/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state, a look-ahead
-/// fit. The `gain` on left-out runs must exceed least_worth. It must also exceed its standard error by run,
-/// which is capped at `most_error`. `samples`: number of samples of each left-out run.
-/// Other rules are worse. The standard error alone accepts additions to three of ten systems
-/// that have none. A t-test over six runs rejects drift worth 0.06 nats in four of five systems.
+/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state. The `gain` on
+/// left-out runs must exceed least_worth. It must also exceed its standard error by run, which is capped at
+/// `most_error`. `samples`: number of samples of each left-out run. Other rules are worse. The standard error alone
+/// accepts additions to three of ten systems that have none. A t-test over six runs rejects drift worth 0.06 nats in
+/// four of five systems.
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());
 
 /// The candidate with the highest sum of scores; the first one if several are equal.
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
-/// Whether the simpler candidate may replace the best one. Its loss must be within one standard error (Breiman et al.
-/// 1984, section 3.4.3), which is capped at tuning.most_loss. `samples`: number of samples of each left-out run.
-bool as_good(const LeftOutScores& candidate, const LeftOutScores& best, const Eigen::VectorXd& samples,
-             const RefineTuning& tuning);
-
-/// The candidate with the fewest modes that is as good as the best one. If several have this number of modes, takes the
-/// one with the highest score.
+/// The candidate with the fewest modes whose loss against the best one is within one standard error (Breiman et al.
+/// 1984, section 3.4.3), which is capped at tuning.most_loss. If several have this number of modes, takes the one with
+/// the highest score. `samples`: number of samples of each left-out run.
 std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
                                  const RefineTuning& tuning);
 

@@ -24,15 +24,13 @@ BankCoordinates::BankCoordinates(Bank origin, FreeParameters free)
 
 Index BankCoordinates::size() const {
   const Index K = origin_.mode_count();
-  const Index noise = free_.Q && free_.Q_by_one_factor ? 1 : K * places().triangle;
-  return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? K * (K - 1) : 0) +
-         K * free_.weight_unit.size();
+  const Index noise = free_.Q_by_one_factor ? 1 : K * places().triangle;
+  return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? K * (K - 1) : 0);
 }
 
 ParameterPlaces BankCoordinates::places() const {
   const Index n = origin_.structure.states;
-  return {free_.theta_unit.rows(), free_.Q ? n * (n + 1) / 2 : 0, origin_.mode_count(), std::ssize(free_.R),
-          free_.transition,        free_.weight_unit.size()};
+  return {free_.theta_unit.rows(), n * (n + 1) / 2, origin_.mode_count(), std::ssize(free_.R), free_.transition};
 }
 
 Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
@@ -40,8 +38,7 @@ Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
   const double* next = set_theta(at.data(), bank);
   next = set_process_noise(next, bank);
   next = set_measurement_noise(next, bank);
-  if (free_.transition) next = set_transition(next, bank);
-  if (free_.weight_unit.size() > 0) set_weights(next, bank);
+  if (free_.transition) set_transition(next, bank);
   return bank;
 }
 
@@ -58,7 +55,6 @@ const double* BankCoordinates::set_theta(const double* at, Bank& bank) const {
 
 const double* BankCoordinates::set_process_noise(const double* at, Bank& bank) const {
   const Index n = origin_.structure.states;
-  if (!free_.Q) return at;
   if (free_.Q_by_one_factor) {
     for (Mode& mode : bank.modes) mode.Q *= bounded_exp(*at);
     return at + 1;
@@ -82,9 +78,9 @@ const double* BankCoordinates::set_measurement_noise(const double* at, Bank& ban
   return at;
 }
 
-const double* BankCoordinates::set_transition(const double* at, Bank& bank) const {
+void BankCoordinates::set_transition(const double* at, Bank& bank) const {
   const Index K = bank.mode_count();
-  if (K == 1) return at;
+  if (K == 1) return;
   Eigen::MatrixXd T = origin_.transition.matrix();
   for (Index i = 0; i < K; ++i) {
     Index largest = 0;
@@ -94,13 +90,6 @@ const double* BankCoordinates::set_transition(const double* at, Bank& bank) cons
     T.row(i) /= T.row(i).sum();
   }
   bank.transition = TransitionMatrix(T);
-  return at;
-}
-
-void BankCoordinates::set_weights(const double* at, Bank& bank) const {
-  Eigen::MatrixXd& weights = bank.transition_logit.weights;
-  const Eigen::Map<const Eigen::MatrixXd> z(at, weights.rows(), weights.cols());
-  weights += z * free_.weight_unit.asDiagonal();
 }
 
 Eigen::VectorXd BankCoordinates::parameters_of(const Bank& bank) const {
@@ -111,14 +100,9 @@ Eigen::VectorXd BankCoordinates::parameters_of(const Bank& bank) const {
     if (at.parameters > 0) all.segment(at.theta(j), at.parameters) = bank.theta(j);
     const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(j)].Q;
     Index next = at.Q(j);
-    for (Index b = 0; at.triangle > 0 && b < n; ++b)
+    for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a) all(next++) = Q(a, b);
     if (at.transition) all.segment(at.T(j), at.modes) = bank.transition.matrix().row(j);
-  }
-  if (at.regressors > 0) {
-    const Eigen::MatrixXd& weights = bank.transition_logit.weights;
-    const Eigen::MatrixXd about_mean = weights.rowwise() - weights.colwise().mean();
-    for (Index j = 0; j < at.modes; ++j) all.segment(at.weights(j), at.regressors) = about_mean.row(j);
   }
   for (Index i = 0; i < at.outputs; ++i) {
     const Index output = free_.R[static_cast<std::size_t>(i)];

@@ -7,10 +7,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <utility>
+#include <vector>
 
-#include "filter/learn/likelihood/information.hpp"
-#include "filter/learn/likelihood/training_likelihood.hpp"
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/likelihood/standard_errors.hpp"
+#include "filter/step/likelihood_gradient.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -30,6 +33,18 @@ bool is_finite(const Bank& bank) {
            return mode.Q.allFinite() && mode.model.A.allFinite() && mode.model.B.allFinite() &&
                   mode.model.c.allFinite();
          });
+}
+
+/// The gradient of training_log_likelihood. Requires has_likelihood_gradient (filter/step).
+BankGradient training_gradient(const Bank& bank, const Recording& recording, const FilterOptions& options) {
+  std::vector<const Trajectory*> runs;
+  for (const Trajectory& run : recording.runs)
+    if (run.role == Role::train) runs.push_back(&run);
+  std::vector<BankGradient> of_run(runs.size());
+  tbb::parallel_for(std::size_t{0}, runs.size(),
+                    [&](std::size_t i) { of_run[i] = log_likelihood_gradient(bank, *runs[i], options); });
+  for (std::size_t i = 1; i < of_run.size(); ++i) of_run[0] += of_run[i];
+  return std::move(of_run.at(0));
 }
 
 struct Slope {
@@ -80,7 +95,7 @@ class Neighbourhood {
       result.sum = slope(origin).gradient;
       result.information *= samples.factor;
     } else {
-      result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter, target_.look);
+      result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter);
       result.sum += differences(origin, [this](const Bank& bank) { return target_.log_prior(bank); });
     }
     if (target_.prior) result.information += prior_information(coordinates_, *target_.prior);
@@ -92,9 +107,7 @@ class Neighbourhood {
   BankCoordinates coordinates_;
   Eigen::VectorXd steps_;
 
-  bool is_exact() const {
-    return target_.look.is_likelihood() && has_likelihood_gradient(coordinates_.origin(), target_.filter);
-  }
+  bool is_exact() const { return has_likelihood_gradient(coordinates_.origin(), target_.filter); }
 
   template <class Value>
   Eigen::VectorXd differences(const Eigen::VectorXd& at, Value value) const {
@@ -181,10 +194,17 @@ BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_va
 
 }  // namespace
 
+double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options) {
+  std::vector<double> of_run(recording.runs.size(), 0.0);
+  tbb::parallel_for(std::size_t{0}, of_run.size(), [&](std::size_t i) {
+    if (recording.runs[i].role == Role::train) of_run[i] = log_likelihood(bank, recording.runs[i], options);
+  });
+  return std::accumulate(of_run.begin(), of_run.end(), 0.0);
+}
+
 double LikelihoodTarget::value(const Bank& bank) const {
   if (!is_finite(bank)) return -std::numeric_limits<double>::infinity();
-  const double likelihood = training_log_likelihood(bank, recording, filter, look);
-  return likelihood + log_prior(bank);
+  return training_log_likelihood(bank, recording, filter) + log_prior(bank);
 }
 
 double LikelihoodTarget::log_prior(const Bank& bank) const {
@@ -201,6 +221,8 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
   while (true) {
     const std::optional<Metric> metric = metric_of(Neighbourhood(target, free, best.bank, steps).gradients());
     if (!metric) return best;
+    if (steps.size() == 0 && !(best.value + metric->expected_gain() > limits.least_value)) best.end = MeasuredFit::none;
+    if (best.end == MeasuredFit::none) return best;
     if (metric->expected_gain() <= small_gain)
       best.end = MeasuredFit::converged;
     else if (best.iterations >= limits.max_iterations)

@@ -1,40 +1,79 @@
 #include "filter/learn/likelihood/standard_errors.hpp"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <optional>
 #include <vector>
 
-#include "filter/learn/likelihood/information.hpp"
+#include "filter/learn/left_out/folds.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {
 
-constexpr double weight_unit_share = 0.1;  // as a share of the prior's standard deviation
+// Step of central differences. Coordinates are in units of about their standard error, or are logarithms. The relative
+// error of a difference is about 1e-4.
+constexpr double difference_step = 1e-2;
+constexpr double least_probability = 1e-100;  // smallest divisor whose square does not underflow
 
 // Standard errors need an accuracy of a few per cent. Their relative error decreases with the square root of the number
 // of samples.
 constexpr double most_numbers = 4e6;  // number of samples times number of coordinates; 32 MB
 constexpr Index fewest_samples = 2000, most_samples = 20000;
 
-/// Covariance of the parameters in the order of ParameterPlaces, and the distance from their values to the maximum.
-struct Observed {
-  Eigen::MatrixXd covariance;
-  Eigen::VectorXd newton_step;
-};
+/// Central differences of `densities` of a bank: one row per sample, one column per coordinate. A row is zero if the
+/// sample has no density.
+template <class Densities>
+Eigen::MatrixXd gradients(const BankCoordinates& around, const Eigen::VectorXd& steps, Index samples,
+                          Densities densities) {
+  Eigen::MatrixXd result(samples, around.size());
+  tbb::parallel_for(Index{0}, around.size(), [&](Index c) {
+    const Eigen::VectorXd step = steps(c) * Eigen::VectorXd::Unit(around.size(), c);
+    result.col(c) = (densities(around.decode(step)) - densities(around.decode(-step))) / (2.0 * steps(c));
+  });
+  return result.array().isNaN().select(0.0, result);
+}
 
-/// Adds the gradient of the prior on the logit's weights, the last coordinates.
-void add_weights_gradient(const BankCoordinates& around, const SwitchingPrior& prior, Eigen::VectorXd& gradient) {
+/// Information by the switching regression. It requires exactly measured states (R = 0). The densities equal those of
+/// the filter, but cost far less, especially with many lags.
+Eigen::MatrixXd exact_information(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                  const Recording& recording) {
+  const TrainingTransitions transitions =
+      gather_training_transitions(recording, around.origin().structure, around.origin().noise_factor);
+  const Eigen::MatrixXd g = gradients(around, steps, transitions.count(), [&](const Bank& bank) {
+    return predictive_log_densities(transitions, switching_model(bank));
+  });
+  return g.transpose() * g;
+}
+
+/// Inverse variances of Q and T by the prior alone. The prior on Q counts as a scatter of its number of transitions.
+/// The prior on T counts as its number of switches, for every pair of modes. The most frequent switch of a row has no
+/// coordinate of its own, because rows sum to one.
+Eigen::VectorXd information_of_noise_and_switches(const BankCoordinates& around, const SwitchingPrior& prior) {
   const ParameterPlaces at = around.places();
-  for (Index a = 0; a < at.regressors; ++a)
-    gradient.segment(around.size() - (at.regressors - a) * at.modes, at.modes) -=
-        around.weight_unit()(a) / (prior.weight_sd(a) * prior.weight_sd(a)) *
-        around.origin().transition_logit.weights.col(a);
+  const Bank& bank = around.origin();
+  const Index n = bank.structure.states;
+  Eigen::VectorXd information = Eigen::VectorXd::Zero(at.size());
+  for (Index j = 0; j < at.modes; ++j) {
+    const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(j)].Q;
+    Index next = at.Q(j);
+    for (Index b = 0; b < n; ++b)
+      for (Index a = b; a < n; ++a)
+        information(next++) = (a == b ? 0.5 : 1.0) * prior.noise_transitions / (Q(a, a) * Q(b, b));
+    if (!at.transition || at.modes == 1) continue;
+    const Eigen::RowVectorXd row = bank.transition.matrix().row(j).cwiseMax(least_probability);
+    Index largest = 0;
+    row.maxCoeff(&largest);
+    for (Index k = 0; k < at.modes; ++k)
+      if (k != largest) information(at.T(j) + k) = prior.counts / row(k) / row(k);
+  }
+  return information;
 }
 
 /// Whether states count as measured exactly because R is at its bound.
@@ -44,19 +83,17 @@ bool is_exact(const BankCoordinates& around) {
          !bank.is_quantised() && bank.terms.empty();
 }
 
-/// Empty if the information matrix is singular.
-std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordinates& around) {
+/// Covariance of the parameters in the order of ParameterPlaces. Empty if the information matrix is singular.
+std::optional<Eigen::MatrixXd> observed_covariance(const LikelihoodTarget& target, const BankCoordinates& around) {
   const Index most =
       std::clamp(static_cast<Index>(most_numbers / static_cast<double>(around.size())), fewest_samples, most_samples);
   const InformationSamples samples(target.recording, most);
   const Eigen::VectorXd steps = Eigen::VectorXd::Constant(around.size(), difference_step);
   const Recording& recording = samples.part ? *samples.part : target.recording;
-  const SampleGradients gradients =
-      is_exact(around) ? exact_sample_gradients(around, steps,
-                                                gather_training_transitions(recording, around.origin().structure,
-                                                                            around.origin().noise_factor))
-                       : sample_gradients(around, steps, recording, target.filter);
-  const Eigen::MatrixXd information = samples.factor * gradients.information + prior_information(around, *target.prior);
+  const Eigen::MatrixXd of_samples = is_exact(around)
+                                         ? exact_information(around, steps, recording)
+                                         : sample_gradients(around, steps, recording, target.filter).information;
+  const Eigen::MatrixXd information = samples.factor * of_samples + prior_information(around, *target.prior);
   if (!information.allFinite()) return std::nullopt;
   // Coordinates differ in scale by orders of magnitude, so the correlation matrix is factorised.
   const Eigen::VectorXd unit =
@@ -64,12 +101,9 @@ std::optional<Observed> observe(const LikelihoodTarget& target, const BankCoordi
   const Cholesky factor(unit.asDiagonal() * information * unit.asDiagonal());
   if (!factor.definite()) return std::nullopt;
   const Eigen::MatrixXd root = factor.whiten(Eigen::MatrixXd(unit.asDiagonal() * around.jacobian().transpose()));
-  Eigen::VectorXd gradient = samples.factor * gradients.sum;
-  add_weights_gradient(around, *target.prior, gradient);
-  const Eigen::VectorXd whitened = factor.whiten(Eigen::MatrixXd(unit.cwiseProduct(gradient)));
-  Observed observed{root.transpose() * root, root.transpose() * whitened};
-  if (!observed.covariance.allFinite() || !(observed.covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
-  return observed;
+  Eigen::MatrixXd covariance = root.transpose() * root;
+  if (!covariance.allFinite() || !(covariance.diagonal().minCoeff() > 0.0)) return std::nullopt;
+  return covariance;
 }
 
 /// Standard errors given the smoothed modes. Those of theta come from its posterior covariance, those of Q from the
@@ -87,38 +121,12 @@ void set_complete_errors(const SwitchingSums& sums, const SwitchingPrior& prior,
   }
   const Eigen::ArrayXXd T = bank.transition.matrix().array();
   const Eigen::ArrayXd rows = sums.switches.rowwise().sum().array() + 1.0;
-  if (!bank.transition_logit.empty())
-    bank.transition_weight_error.setConstant(bank.mode_count(), bank.transition_logit.weights.cols(), not_a_number);
   bank.transition_standard_error = ((T * (1.0 - T)).colwise() / rows).sqrt().matrix();
   if (with_R)
     bank.R_standard_error = Eigen::VectorXd::Constant(bank.R.rows(), not_a_number).asDiagonal().toDenseMatrix();
 }
 
-/// Whether the training runs contradict sharper borders between modes. The test doubles all log odds, which makes
-/// borders twice as sharp and does not move them. If no sample lies near a border, the runs do not contradict, even if
-/// the prior makes standard errors small.
-bool against_harder_borders(const LikelihoodTarget& target, const Bank& bank) {
-  constexpr double clearly = 1.92;  // nats: 95 % quantile of chi-square with one degree of freedom, halved
-  Bank harder = bank;
-  harder.transition_logit.weights *= 2.0;
-  const Eigen::MatrixXd squared = bank.transition.matrix().cwiseAbs2();
-  harder.transition = TransitionMatrix(squared.array().colwise() / squared.rowwise().sum().array());
-  const LikelihoodTarget data_alone{target.recording, target.filter, std::nullopt};
-  return data_alone.value(bank) - data_alone.value(harder) > clearly;
-}
-
-/// Standard errors of those weights of the logit that the data determine. If no sample lies on a mode's border, the
-/// data only show that weights are large. The standard error of such a weight is then about the prior's standard
-/// deviation, or the weight was still growing at the end of expectation-maximisation. Such errors become NaN.
-Eigen::VectorXd determined(const Eigen::VectorXd& error, const Eigen::VectorXd& step, const Eigen::VectorXd& prior_sd) {
-  constexpr double most = 0.5;  // limit on two shares: standard error / prior's standard deviation, and remaining step
-                                // / standard error
-  const bool all = (error.array() < most * prior_sd.array()).all() && (step.array().abs() < most * error.array()).all();
-  return all ? error : Eigen::VectorXd::Constant(error.size(), not_a_number);
-}
-
-void set_observed_errors(const ParameterPlaces& at, const Observed& observed, const SwitchingPrior& prior, Bank& bank) {
-  const Eigen::MatrixXd& covariance = observed.covariance;
+void set_observed_errors(const ParameterPlaces& at, const Eigen::MatrixXd& covariance, Bank& bank) {
   const Index n = bank.structure.states;
   const Eigen::VectorXd error = covariance.diagonal().cwiseSqrt();
   for (Index j = 0; j < at.modes; ++j) {
@@ -129,19 +137,43 @@ void set_observed_errors(const ParameterPlaces& at, const Observed& observed, co
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a, ++next) mode.Q_standard_error(a, b) = mode.Q_standard_error(b, a) = error(next);
     if (at.transition) bank.transition_standard_error.row(j) = error.segment(at.T(j), at.modes);
-    if (at.regressors > 0)
-      bank.transition_weight_error.row(j) =
-          determined(error.segment(at.weights(j), at.regressors),
-                     observed.newton_step.segment(at.weights(j), at.regressors), prior.weight_sd)
-              .transpose();
   }
-  // The weights of a mode are relative to those of the other modes. If the weight of one mode is unknown, all are
-  // unknown.
-  if (!bank.transition_weight_error.allFinite()) bank.transition_weight_error.setConstant(not_a_number);
   if (at.outputs > 0) bank.R_standard_error = error.segment(at.R(), at.outputs).asDiagonal().toDenseMatrix();
 }
 
 }  // namespace
+
+SampleGradients sample_gradients(const BankCoordinates& around, const Eigen::VectorXd& steps,
+                                 const Recording& recording, const FilterOptions& filter) {
+  SampleGradients result{Eigen::VectorXd::Zero(around.size()), Eigen::MatrixXd::Zero(around.size(), around.size())};
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train || run.samples() < 2) continue;
+    const Eigen::MatrixXd g =
+        gradients(around, steps, run.samples(), [&](const Bank& bank) { return log_densities(bank, run, filter); });
+    result.sum += g.colwise().sum().transpose();
+    result.information.noalias() += g.transpose() * g;
+  }
+  return result;
+}
+
+InformationSamples::InformationSamples(const Recording& recording, Index most)
+    : part(learning_part(recording, most, 1)) {
+  if (part)
+    factor =
+        static_cast<double>(recording.transitions(Role::train)) / static_cast<double>(part->transitions(Role::train));
+}
+
+Eigen::MatrixXd prior_information(const BankCoordinates& around, const SwitchingPrior& prior) {
+  const ParameterPlaces at = around.places();
+  const Eigen::MatrixXd J = around.jacobian();
+  Eigen::MatrixXd information = J.transpose() * information_of_noise_and_switches(around, prior).asDiagonal() * J;
+  const Index thetas = at.parameters == 0 ? 0 : around.has_one_theta() ? 1 : at.modes;
+  for (Index j = 0; j < thetas; ++j) {
+    const auto of_theta = J.middleRows(at.theta(j), at.parameters);
+    information.noalias() += of_theta.transpose() * prior.information * of_theta;
+  }
+  return information;
+}
 
 FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, const SwitchingPrior& prior,
                               bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R) {
@@ -157,7 +189,6 @@ FreeParameters all_parameters(const Bank& bank, const SwitchingSums& complete, c
   std::iota(free.R.begin(), free.R.end(), Index{0});
   if (least_R.size() > 0) free.least_R = least_R.cwiseMax(bank.rounding_variance());
   free.transition = bank.mode_count() > 1;
-  if (!bank.transition_logit.empty()) free.weight_unit = weight_unit_share * prior.weight_sd;
   return free;
 }
 
@@ -165,10 +196,8 @@ Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& 
                           Bank bank) {
   set_complete_errors(complete, *target.prior, !free.R.empty(), bank);
   const BankCoordinates around(bank, free);
-  if (const auto observed = observe(target, around))
-    set_observed_errors(around.places(), *observed, *target.prior, bank);
-  if (!bank.transition_logit.empty() && !against_harder_borders(target, bank))
-    bank.transition_weight_error.setConstant(not_a_number);
+  if (const auto covariance = observed_covariance(target, around))
+    set_observed_errors(around.places(), *covariance, bank);
   return bank;
 }
 

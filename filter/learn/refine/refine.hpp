@@ -13,15 +13,6 @@
 
 namespace modebank {
 
-/// Gain of a look-ahead fit (look_ahead_fit.hpp).
-struct LookAheadStage {
-  double score_before = 0.0;         ///< mean look-ahead score of the left-out runs before the fit [nats per sample]
-  double score = 0.0;                ///< mean look-ahead score after the fit; equal to score_before if no fit was tried
-  double gain_standard_error = 0.0;  ///< standard error of the difference, clustered by run
-  bool taken = false;
-  bool of_errors = false;  ///< true: scores are minus half of mean squared errors, without unit
-};
-
 struct Refinement {
   Bank bank;
   Bank start;                               ///< the bank of the mixture
@@ -30,15 +21,14 @@ struct Refinement {
                                   ///< before the iteration
   MeasurementStage measurement;
   SwitchingStage switching = {};
-  LookAheadStage look_ahead = {};
   /// The fits to the training part of each split (validation_splits), in the order of the splits. They are used for
   /// scores on unseen runs. Empty if no run was left out.
   std::vector<Bank> of_splits = {};
   Eigen::Index learned_transitions = 0;  ///< number of transitions in the part of the training runs that was used
-                                         ///< (learning_part.hpp); 0 means all
+                                         ///< (left_out/folds.hpp); 0 means all
 };
 
-/// Expectation-maximisation of the switching model (switching_regression.hpp), starting from banks of mixtures.
+/// Expectation-maximisation of the switching model (regression.hpp), starting from banks of mixtures.
 /// - The score of left-out training runs, in the bank's own filter, decides the start and the number of iterations.
 ///   Held-out runs are never used.
 /// - Among starts that are as good as the best, the one with the fewest modes is chosen (fewest_modes_as_good).
@@ -60,5 +50,12 @@ struct Refinement {
 /// std::invalid_argument for a motion model.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
+
+/// Fits the theta of one motion to its errors up to `horizon` samples ahead (ident/fit/horizon_fit.hpp). Noise and
+/// transitions then maximise the likelihood with that theta. `one_motion`: from refine_bank with these runs and
+/// options. It is changed if the errors of free runs after `measured` samples fall on left-out runs, by the rule
+/// (left_out/rule.hpp). Returns whether it is. The result has no standard errors.
+bool fit_horizon(const Recording& recording, const RefineOptions& options, Eigen::Index horizon, Eigen::Index measured,
+                 Refinement& one_motion);
 
 }  // namespace modebank

@@ -1,11 +1,17 @@
 #include "filter/learn/switching/em.hpp"
 
+#include <algorithm>
 #include <optional>
+#include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
-#include "filter/learn/switching/transition_regression.hpp"
+#include "filter/learn/from_mixture/bank.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/switching/logit.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/seed.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
@@ -57,6 +63,22 @@ class ConditionalMaximiser {
   SwitchingRegression& model_;
 };
 
+/// Average information of one transition about theta, for residuals of covariance Q, p x p. The share
+/// `least_information` of its largest entry is added to make it definite.
+Eigen::MatrixXd unit_information(const TrainingTransitions& transitions, const Eigen::MatrixXd& Q,
+                                 double least_information) {
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd G = X.transpose() * transitions.usable.asDiagonal() * X / transitions.usable.sum();
+  const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(Q);
+  if (!Q_inverse)
+    throw DataError(
+        "the states' residuals in the training runs are linearly dependent: one state follows from "
+        "the others; leave it out of data.state");
+  Eigen::MatrixXd information = Eigen::kroneckerProduct(*Q_inverse, G);
+  information.diagonal().array() += least_information * information.diagonal().maxCoeff();
+  return information;
+}
+
 }  // namespace
 
 SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
@@ -95,6 +117,45 @@ void ExpectationMaximisation::step() {
   const double gain = posterior_.log_likelihood + log_prior(prior_, options_.one_theta, model_) - objective_.back();
   // The first step moves from the optimum of the start to that of the prior. So the objective may fall in this step.
   converged_ = objective_.size() > 1 && !(gain >= options_.tolerance * static_cast<double>(transitions_.count()));
+}
+
+SwitchingPrior switching_prior(const TrainingTransitions& transitions, const GlobalModel& global,
+                               const Eigen::VectorXd& prior_sd, double noise_transitions) {
+  SwitchingPrior prior;
+  prior.mean = global.theta;
+  prior.noise = global.residual_covariance;
+  prior.noise.diagonal() = prior.noise.diagonal().unaryExpr(&positive_variance) * (1.0 + 1e-9);
+  prior.noise_transitions = noise_transitions;
+  prior.counts = label_count_smoothing;
+  prior.information = prior_sd.size() > 0 ? Eigen::MatrixXd(prior_sd.array().square().inverse().matrix().asDiagonal())
+                                          : unit_information(transitions, prior.noise, refine_tuning.least_information);
+  return prior;
+}
+
+SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
+                                         Index modes, Index length, std::uint64_t seed, Index index) {
+  std::mt19937_64 generator = make_generator(seed, "refine", static_cast<std::uint64_t>(index));
+  const Index N = transitions.count();
+  length = std::clamp(length, Index{1}, N);
+  std::vector<Index> slots(static_cast<std::size_t>(std::max(N / length, Index{1})));
+  for (std::size_t i = 0; i < slots.size(); ++i) slots[i] = static_cast<Index>(i) * length;
+  for (std::size_t i = slots.size() - 1; i > 0; --i) std::swap(slots[i], slots[generator() % (i + 1)]);
+
+  SwitchingRegression model;
+  model.theta = prior.mean.replicate(1, modes);
+  model.Q.assign(static_cast<std::size_t>(modes), prior.noise);
+  model.transition = TransitionMatrix::sticky(modes, refine_tuning.start_stay).matrix();
+  model.initial = Eigen::VectorXd::Constant(modes, 1.0 / static_cast<double>(modes));
+  ModePosterior posterior{Eigen::MatrixXd::Zero(N, modes), Eigen::MatrixXd::Zero(modes, modes),
+                          Eigen::VectorXd::Zero(modes)};
+  for (Index j = 0; j < modes; ++j)
+    posterior.probability.col(j).segment(slots[static_cast<std::size_t>(j) % slots.size()], length).setOnes();
+  const SwitchingSums sums = sum_transitions(transitions, posterior, prior);
+  const SwitchingRegression fitted =
+      maximise(transitions.structure, sums, prior, {.alternations = refine_tuning.alternations}, model);
+  model.theta = fitted.theta;
+  model.Q = fitted.Q;
+  return model;
 }
 
 }  // namespace modebank

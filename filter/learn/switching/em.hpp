@@ -1,9 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/switching/regression.hpp"
+#include "filter/learn/tuning.hpp"
+#include "ident/model/local_model.hpp"
 
 namespace modebank {
 
@@ -15,7 +18,7 @@ struct SwitchingEmOptions {
 
 /// The model with the largest expected log posterior near `model`. The sums must come from the parameters of `model`. A
 /// few alternations maximise over theta given Q, and over Q given theta (ECM: Meng & Rubin 1993). T and initial
-/// probabilities are exact, except T of a logit (transition_regression.hpp).
+/// probabilities are exact, except T of a logit (logit.hpp).
 SwitchingRegression maximise(const LinearStructure& structure, const SwitchingSums& sums, const SwitchingPrior& prior,
                              const SwitchingEmOptions& options, SwitchingRegression model);
 
@@ -43,5 +46,16 @@ class ExpectationMaximisation {
   std::vector<double> objective_;
   bool converged_ = false;
 };
+
+/// The prior described in refine.hpp. `prior_sd`: p standard deviations, or empty. Throws DataError if the residual
+/// covariance of the global model is singular.
+SwitchingPrior switching_prior(const TrainingTransitions& transitions, const GlobalModel& global,
+                               const Eigen::VectorXd& prior_sd, double noise_transitions);
+
+/// A start with `modes` modes. Each mode is fitted to a random stretch of `length` transitions, with the prior.
+/// Stretches do not overlap if there is room. The transition matrix favours staying. Restart `index` derives its
+/// generator from the seed.
+SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
+                                         Index modes, Index length, std::uint64_t seed, Index index);
 
 }  // namespace modebank

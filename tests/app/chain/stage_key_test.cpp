@@ -134,7 +134,6 @@ const std::map<std::string, std::vector<std::string>> texts{
     {"data.skip_rows", {"auto"}},
     {"mixture.components", {"2", "1..3"}},
     {"window.prior", {"none", "0.3"}},
-    {"bank.look_ahead", {"2", "2 error"}},
     {"job.seed", {"2", "3"}},
     {"filter.horizon", {"2", "1..3"}},
     {"window.state_lags", {"2", "auto"}},

@@ -6,7 +6,6 @@
 #include "filter/step/gaussian.hpp"
 #include "ident/data/streams.hpp"
 #include "ident/fit/global_model.hpp"
-#include "ident/fit/unidentifiable_regressors.hpp"
 
 namespace modebank::test {
 namespace {

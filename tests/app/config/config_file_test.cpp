@@ -89,16 +89,12 @@ TEST_F(ConfigFile, CommandLineWins) {
 }
 
 TEST_F(ConfigFile, ResolvedTextIsAConfigurationWithTheSameValues) {
-  const Config first = load(
-      "[data]\nstate = wz\ninput = a, b\n[window]\nprior = 0.1, 0.2, 0.30000000000000004\n"
-      "[bank]\nlook_ahead = 12 error\n");
+  const Config first = load("[data]\nstate = wz\ninput = a, b\n[window]\nprior = 0.1, 0.2, 0.30000000000000004\n");
   const std::string text = resolved_text(first);
   const Config second = load(text);
   EXPECT_EQ(resolved_text(second), text);
   EXPECT_EQ(second.window.prior_sd, first.window.prior_sd);
   EXPECT_EQ(second.window.prior, Prior::global);
-  EXPECT_EQ(second.bank.em.look_ahead, 12);
-  EXPECT_EQ(second.bank.em.look_ahead_score, LookAheadScore::error);
 }
 
 TEST_F(ConfigFile, RootIsAbsoluteFromFileThenEnvironmentThenFolder) {

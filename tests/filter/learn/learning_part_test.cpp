@@ -1,10 +1,9 @@
 // The part of a long recording that is drawn for learning.
-#include "filter/learn/refine/learning_part.hpp"
-
 #include <gmock/gmock.h>
 
 #include <map>
 
+#include "filter/learn/left_out/folds.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {

@@ -1,6 +1,4 @@
 // Growth of the second moments of switching systems.
-#include "filter/learn/switching/mean_square_growth.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/Eigenvalues>
@@ -10,6 +8,7 @@
 #include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 
+#include "filter/learn/switching/screening.hpp"
 #include "filter/learn/tuning.hpp"
 #include "ident/base/not_a_number.hpp"
 

@@ -11,8 +11,10 @@
 #include <optional>
 #include <random>
 
+#include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/refine/refine.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {
@@ -146,94 +148,92 @@ TEST(RefineMeasured, KeepsAGivenRAndFitsTheRest) {
   }
 }
 
-// Only R is estimated, with an exact likelihood: one mode with a = -0.2 without input.
+// One mode with a = -0.2, whose likelihood is exact.
 
 constexpr double Q_true = 0.04;
 
 Recording one_mode_with(double R) {
   SystemTruth truth;
-  truth.theta << -0.2, -0.2, 0.0, 0.0;
+  truth.theta << -0.2, -0.2, 0.3, 0.3;
   truth.Q.setConstant(Q_true);
   truth.R = R;
-  return measured_runs(truth, 3, 800, 23);
+  return measured_runs(truth, 12, 800, 23);
 }
 
 Bank one_mode(const Recording& recording, double Q) {
-  return bank_of(recording, Eigen::Vector2d(-0.2, 0.0), Eigen::VectorXd::Constant(1, Q), 1e-9);
+  return bank_of(recording, Eigen::Vector2d(-0.2, 0.3), Eigen::VectorXd::Constant(1, Q), 1e-9);
 }
 
-std::optional<Bank> with_R(const Recording& recording, const Bank& bank) {
-  return estimate_measurement_noise({recording, {}, std::nullopt}, bank, {}).bank;
-}
+/// Searches R in these runs, from a bank.
+class SearchOfR {
+ public:
+  explicit SearchOfR(const Recording& runs, const Bank& bank, Index folds = 1) : recording(runs), start(bank) {
+    options.folds = folds;
+  }
+  MeasurementNoise from(const std::array<double, 2>& shares) const {
+    return find_measurement_noise(in, recording, transitions, in.prior(exact), start, shares);
+  }
+  std::optional<Bank> found() const { return from(R_start_shares).bank; }
+
+  const Recording& recording;
+  Bank start;
+  WindowFits fits = test::windows_of(recording, 25, 1);
+  TrainingTransitions transitions = gather_training_transitions(recording, test::structure_of(recording));
+  RefineOptions options;
+  FilterOptions filter;
+  RefineStart exact{"", switching_model(start), 4.0};
+  RefineInput in{recording, fits, start, transitions, options, filter};
+};
 
 /// R must be found for every ratio of R to Q.
-TEST(EstimateMeasurementNoise, SplitsQAndR) {
+TEST(FindMeasurementNoise, SplitsQAndR) {
   for (const double R : {0.005, 0.02, 0.2}) {
     const Recording recording = one_mode_with(R);
-    const std::optional<Bank> bank = with_R(recording, one_mode(recording, Q_true + 2.0 * R));
+    const std::optional<Bank> bank = SearchOfR(recording, one_mode(recording, Q_true + 2.0 * R)).found();
     ASSERT_TRUE(bank) << R;
     EXPECT_NEAR(bank->R(0, 0), R, 0.2 * R + 0.003) << R;
     EXPECT_NEAR(bank->modes[0].Q(0, 0), Q_true, 0.2 * Q_true) << R;
   }
 }
 
-TEST(EstimateMeasurementNoise, IsNoneWhereTheDataShowNone) {
+TEST(FindMeasurementNoise, IsNoneWhereTheDataShowNone) {
   const Recording recording = one_mode_with(0.0);
-  EXPECT_FALSE(with_R(recording, one_mode(recording, Q_true)));
+  EXPECT_FALSE(SearchOfR(recording, one_mode(recording, Q_true)).found());
 }
 
-/// A search that has failed starts, because R and Q are infinite.
-MeasurementNoise searched_from(const std::array<double, 4>& shares) {
-  const Recording recording = one_mode_with(0.02);
-  RefineTuning tuning;
-  tuning.R_start_shares = shares;
-  return estimate_measurement_noise({recording, {}, std::nullopt}, one_mode(recording, Q_true + 0.04), tuning);
-}
-
-TEST(EstimateMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
+/// A start fails if R and Q are infinite.
+TEST(FindMeasurementNoise, AStartThatFailsIsCountedAndTheOthersDecide) {
   constexpr double infinite = std::numeric_limits<double>::infinity();
-  const MeasurementNoise none_failed = searched_from({0.05, 0.005, 0.2, 0.45});
-  const MeasurementNoise some_failed = searched_from({infinite, 0.05, std::nan(""), 0.2});
-  const MeasurementNoise all_failed = searched_from({infinite, infinite, infinite, infinite});
+  const Recording recording = one_mode_with(0.02);
+  const SearchOfR search(recording, one_mode(recording, Q_true + 0.04));
+  const MeasurementNoise none_failed = search.from({0.05, 0.45}), one_failed = search.from({infinite, 0.05}),
+                         all_failed = search.from({infinite, std::nan("")});
   EXPECT_EQ(none_failed.failed_starts, 0);
-  EXPECT_EQ(some_failed.starts, 4);
-  EXPECT_EQ(some_failed.failed_starts, 2);
-  ASSERT_TRUE(none_failed.bank && some_failed.bank);
-  EXPECT_NEAR(some_failed.bank->R(0, 0), 0.02, 0.007);
-  EXPECT_NEAR(some_failed.bank->R(0, 0), none_failed.bank->R(0, 0), 1e-4);
-  EXPECT_EQ(all_failed.failed_starts, 4);
+  EXPECT_EQ(one_failed.failed_starts, 1);
+  ASSERT_TRUE(none_failed.bank && one_failed.bank);
+  EXPECT_NEAR(one_failed.bank->R(0, 0), 0.02, 0.007);
+  EXPECT_NEAR(one_failed.bank->R(0, 0), none_failed.bank->R(0, 0), 1e-4);
+  EXPECT_EQ(all_failed.failed_starts, 2);
   EXPECT_FALSE(all_failed.bank);
 }
 
 /// Regression test: for one of 50 known systems the result was R = 0, with a loss of 0.12 nats. With the theta of exact
 /// states, R = 0 was most likely.
-TEST(RefineMeasured, FindsRThatThetaHides) {
+TEST(FindMeasurementNoise, FindsRThatThetaHides) {
   SystemTruth truth;
   truth.theta.col(1) = truth.theta.col(0);
   truth.Q(1) = truth.Q(0);
   const Recording recording = measured_runs(truth, 4, 800, 5);
-  const WindowFits fits = test::windows_of(recording, 25, 1);
   const TrainingTransitions transitions = gather_training_transitions(recording, test::structure_of(recording));
   const Eigen::VectorXd theta = truth.theta.col(0) - Eigen::Vector2d(0.4, 0.0);
   const Eigen::VectorXd residual = transitions.data.increments - transitions.data.regressors * theta;
   const Bank drawn =
       bank_of(recording, theta,
               Eigen::VectorXd::Constant(1, residual.squaredNorm() / static_cast<double>(residual.size())), 1e-9);
-  const LikelihoodTarget target{recording, {}, std::nullopt};
-  ASSERT_FALSE(estimate_measurement_noise(target, drawn, {}).bank);
-  RefineOptions options;
-  options.folds = 1;
-  const FilterOptions filter;
-  const RefineInput in{recording, fits, drawn, transitions, options, filter};
-  const CrossValidation validation(in);
-  Fit given{{"", switching_model(drawn), 4.0}, switching_model(drawn)};
-  given.bank = drawn;
-  given.prior = in.prior(4.0);
-  MeasurementStage stage;
-  const Fit measured = fit_with_measurement_noise(in, validation, given, stage);
-  EXPECT_TRUE(measured.R_estimated);
-  EXPECT_NEAR(measured.bank.R(0, 0), truth.R, 0.2 * truth.R);
-  EXPECT_NEAR(measured.bank.theta(0)(0), truth.theta(0, 0), 0.05);
+  const std::optional<Bank> bank = SearchOfR(recording, drawn).found();
+  ASSERT_TRUE(bank);
+  EXPECT_NEAR(bank->R(0, 0), truth.R, 0.2 * truth.R);
+  EXPECT_NEAR(bank->theta(0)(0), truth.theta(0, 0), 0.05);
 }
 
 /// If the splits find no R, scores of left-out runs do not change and cannot test the R of all training runs. On ICE
@@ -254,42 +254,47 @@ TEST(MostlyHave, NeedsHalfOfTheSplitsToHaveAnROfItsSize) {
 /// No part of a fit, including R, may use the runs that are scored with it. Here the last run has ten times the
 /// measurement noise.
 TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
-  SystemTruth truth;
-  truth.theta.col(1) = truth.theta.col(0);
-  truth.Q.setConstant(Q_true);
-  truth.R = 0.02;
-  Recording recording = measured_runs(truth, 3, 500, 31);
-  truth.R = 0.2;
-  recording.runs.push_back(measured_runs(truth, 1, 500, 32).runs.front());
+  Recording recording = one_mode_with(0.02);
+  recording.runs.push_back(one_mode_with(0.2).runs.front());
   recording.runs.back().run = "worse";
-  const WindowFits fits = test::windows_of(recording, 25, 1);
-  const Bank frame = bank_of(recording, truth.theta.leftCols(1), Eigen::VectorXd::Constant(1, 0.1), 1e-9);
-  const TrainingTransitions transitions = gather_training_transitions(recording, frame.structure);
-  RefineOptions options;
-  options.folds = 4;
-  const FilterOptions filter;
-  const RefineInput in{recording, fits, frame, transitions, options, filter};
-  CrossValidation validation(in);
-  const RefineStart start{"mixture", switching_model(frame), 4.0};
-  validation.consider({start});
+  const SearchOfR search(recording, one_mode(recording, 0.1), 4);
+  CrossValidation validation(search.in);
+  validation.consider({search.exact});
   Fit given = validation.chosen();
   given.bank = given.of_splits.front();
-  given.prior = in.prior(4.0);
+  given.prior = search.in.prior(given.start);
   MeasurementStage stage;
-  fit_with_measurement_noise(in, validation, given, stage);
-  double expected = 0.0, samples = 0.0;
+  const Fit fit = fit_with_measurement_noise(search.in, validation, given, stage);
+  EXPECT_TRUE(fit.R_estimated);
   std::vector<double> R;
+  double expected = 0.0, samples = 0.0;
   for (std::size_t s = 0; s < validation.splits().size(); ++s) {
-    const ValidationSplit& split = validation.splits()[s].runs;
-    const Bank bank = with_R(split.training, validation.chosen().of_splits[s]).value();
+    const SplitData& split = validation.splits()[s];
+    const Bank bank = find_measurement_noise(search.in, split.runs.training, split.transitions,
+                                             split.prior(search.in, given.start), given.of_splits[s], R_start_shares)
+                          .bank.value();
     R.push_back(bank.R(0, 0));
-    for (const Trajectory& run : split.left_out.runs) {
-      expected += log_likelihood(bank, run, filter);
+    for (const Trajectory& run : split.runs.left_out.runs) {
+      expected += log_likelihood(bank, run, search.filter);
       samples += static_cast<double>(run.transitions());
     }
   }
   EXPECT_LT(*std::min_element(R.begin(), R.end()), 0.5 * *std::max_element(R.begin(), R.end()));
-  EXPECT_NEAR(stage.score_before, expected / samples, 1e-12);
+  EXPECT_NEAR(stage.score, expected / samples, 1e-9);
+}
+
+/// Scores that are not numbers accept nothing.
+TEST(RefineMeasured, NothingIsTakenWhereScoresAreNotNumbers) {
+  const Recording recording = one_mode_with(0.02);
+  const SearchOfR search(recording, one_mode(recording, Q_true + 0.04), 3);
+  CrossValidation validation(search.in);
+  validation.consider({search.exact});
+  Fit given = validation.chosen();
+  given.bank = search.start;
+  given.prior = search.in.prior(given.start);
+  for (Bank& bank : given.of_splits) bank.modes[0].Q.setConstant(std::nan(""));
+  MeasurementStage stage;
+  EXPECT_FALSE(fit_with_measurement_noise(search.in, validation, given, stage).R_estimated);
 }
 
 }  // namespace

@@ -9,8 +9,7 @@
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
-#include "filter/learn/likelihood/training_likelihood.hpp"
-#include "filter/learn/switching/starts.hpp"
+#include "filter/learn/switching/em.hpp"
 
 namespace modebank {
 namespace {

@@ -6,7 +6,7 @@
 #include <Eigen/LU>
 #include <cmath>
 
-#include "filter/learn/switching/starts.hpp"
+#include "filter/learn/switching/em.hpp"
 #include "tests/filter/learn/refine_recovery.hpp"
 #include "tests/support/matrix_compare.hpp"
 

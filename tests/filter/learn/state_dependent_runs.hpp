@@ -6,7 +6,7 @@
 #include <random>
 
 #include "filter/learn/from_mixture/bank.hpp"
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank::test {

@@ -1,7 +1,5 @@
 // The switching regression, compared with the sum over all sequences of modes, with the filter's likelihood, and with
 // its own laws.
-#include "filter/learn/switching/switching_regression.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
@@ -14,7 +12,7 @@
 #include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/starts.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "ident/base/linalg.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -179,7 +177,7 @@ TEST(SwitchingRegression, ACovarianceThatIsNotDefiniteIsSaidToBe) {
   const Recording recording = noisy_runs(2, {100, 80});
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const GlobalModel global = fit_global(recording, t.structure);
-  const SwitchingPrior prior = switching_prior(t, global, {}, 1.0, {});
+  const SwitchingPrior prior = switching_prior(t, global, {}, 1.0);
   SwitchingRegression model;
   model.theta = global.theta;
   model.Q = {global.residual_covariance};

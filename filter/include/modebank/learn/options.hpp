@@ -40,14 +40,6 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Score of look-ahead learning: the log density of a prediction, or its squared error.
-enum class LookAheadScore { density, error };
-
-template <>
-struct EnumNames<LookAheadScore> {
-  static constexpr Names<2> values{"density", "error"};
-};
-
 /// Options of a bank's refinement. Defaults are the recommended method.
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< iteration limit of expectation-maximisation
@@ -57,10 +49,6 @@ struct RefineOptions {
   std::ptrdiff_t most_modes = 0;  ///< largest number of modes of the random starts. The search tries this number, three
                                   ///< quarters of it and so on, down to the mixture's number. With 0, it tries only the
                                   ///< mixture's number
-  std::ptrdiff_t look_ahead = 1;  ///< largest number of samples ahead: predictions 1 to this many samples ahead are
-                                  ///< scored
-  LookAheadScore look_ahead_score = LookAheadScore::density;  ///< `density` also serves to choose starts, modes and
-                                                              ///< iterations
   std::ptrdiff_t folds = 6;       ///< number of parts of the cross-validation; 1 turns it off, and every start runs to
                                   ///< convergence
   bool measurement_noise = true;  ///< true: R maximises the filter's likelihood of the training runs; false: R of the
@@ -75,9 +63,6 @@ struct RefineOptions {
   std::uint64_t seed = 1;              ///< seed of the random starts
   std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from; they lie in stretches drawn
                                        ///< with the seed; 0 takes all transitions
-
-  /// Number of samples ahead at which densities are scored.
-  std::ptrdiff_t densities_ahead() const { return look_ahead_score == LookAheadScore::density ? look_ahead : 1; }
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.

@@ -32,8 +32,6 @@ struct RefineCandidate {
                                                                           ///< run; by stretch if there are fewer than
                                                                           ///< three runs
   bool selected = false;                                                  ///< whether the bank comes from this row
-  double theta_transitions = 0.0;  ///< weight of the prior that draws theta towards one motion, in
-                                   ///< transitions
 };
 
 /// The search for R, and the fit with R if it is not negligible.
@@ -55,8 +53,6 @@ struct MeasurementStage {
 struct SwitchingStage {
   double width = 0.0;  ///< prior standard deviation of the weights, in units of the regressors' standard deviation; 0
                        ///< means no dependence
-  double memory_sd = std::numeric_limits<double>::infinity();      ///< prior standard deviation of the previous mode's
-                                                                   ///< effect on the log odds
   double score_before = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs with
                                                                    ///< constant T
   double gain = std::numeric_limits<double>::quiet_NaN();  ///< gain of the logit over constant T [nats/sample]; NaN if

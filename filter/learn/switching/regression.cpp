@@ -1,4 +1,4 @@
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/switching/regression.hpp"
 
 #include <tbb/parallel_for.h>
 
@@ -207,17 +207,6 @@ std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, co
   return covariances;
 }
 
-Eigen::MatrixXd memory_of(const Eigen::MatrixXd& log_T) {
-  Eigen::MatrixXd memory = log_T.colwise() - log_T.rowwise().mean();
-  memory.rowwise() -= memory.colwise().mean().eval();
-  return memory;
-}
-
-Eigen::MatrixXd memory_projection(Index modes) {
-  const Eigen::MatrixXd centred = Eigen::MatrixXd::Identity(modes, modes).array() - 1.0 / static_cast<double>(modes);
-  return Eigen::kroneckerProduct(centred, centred);
-}
-
 double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model) {
   const Index thetas = one_theta ? 1 : model.modes();
   double sum = 0.0;
@@ -230,11 +219,8 @@ double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingReg
     if (!inverse) return -std::numeric_limits<double>::infinity();
     sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (*inverse * prior.noise).trace());
   }
-  if (!model.logit.empty()) {
+  if (!model.logit.empty())
     sum -= 0.5 * (model.logit.weights * prior.weight_sd.cwiseInverse().asDiagonal()).squaredNorm();
-    const Eigen::MatrixXd log_T = model.transition.array().max(std::numeric_limits<double>::min()).log();
-    sum -= 0.5 * memory_of(log_T).squaredNorm() / (prior.memory_sd * prior.memory_sd);
-  }
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
   return sum;

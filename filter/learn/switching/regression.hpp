@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -37,11 +36,6 @@ struct SwitchingPrior {
   double counts = 0.0;             ///< >= 0, added to every expected count of switches and of first modes
   Eigen::VectorXd weight_sd = {};  ///< d, standard deviations of the logit's weights, normal about zero; empty if T is
                                    ///< constant
-
-  /// Standard deviation of the logit's memory, normal about zero. The memory (memory_of) is the part of log T beyond
-  /// its row and column means. If this standard deviation is small, the previous mode hardly matters. The mode is then
-  /// almost a function of state and input, as in a piecewise affine system.
-  double memory_sd = std::numeric_limits<double>::infinity();
 };
 
 /// Smoothed mode probabilities given all transitions of the runs.
@@ -79,11 +73,6 @@ SwitchingSums sum_transitions(const TrainingTransitions& transitions, const Mode
 /// the mode's Q or information is not definite.
 std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
                                                    const SwitchingRegression& model);
-
-/// Effect of the previous mode on the log odds of the next mode: log T minus the means of its rows and columns. K x K.
-Eigen::MatrixXd memory_of(const Eigen::MatrixXd& log_T);
-/// The matrix that maps log T (row by row) to memory_of. K^2 x K^2.
-Eigen::MatrixXd memory_projection(Index modes);
 
 /// Log density of the prior at `model`, up to a constant; minus infinity if a Q is not definite.
 double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model);

@@ -1,14 +1,14 @@
-#include "filter/learn/switching/mode_screening.hpp"
+#include "filter/learn/switching/screening.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <string>
 #include <vector>
 
 #include "filter/learn/from_mixture/pooled_modes.hpp"
-#include "filter/learn/switching/mean_square_growth.hpp"
 #include "ident/base/distributions.hpp"
 #include "ident/base/linalg.hpp"
 
@@ -125,9 +125,35 @@ std::optional<Index> unstable_mode(const LinearStructure& structure, const Switc
 
 }  // namespace
 
+double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
+  const Index n = structure.dimension(), K = model.modes();
+  std::vector<Eigen::MatrixXd> F;
+  bool one_motion = true;
+  for (Index j = 0; j < K; ++j) {
+    F.push_back(unpack(structure, model.theta.col(j)).full_form());
+    if (!F.back().allFinite()) return std::numeric_limits<double>::infinity();
+    one_motion = one_motion && F.back() == F.front();
+  }
+  // If all modes have one motion, the sum of their moments evolves like the moment of a single mode, because rows of T
+  // sum to one. A root of the n x n matrix is exact even if the larger operator has multiple eigenvalues.
+  if (one_motion) return std::pow(radius(structure, model, 0), 2);
+  const auto after_a_step = [&](const Eigen::VectorXd& moments) -> Eigen::VectorXd {
+    Eigen::MatrixXd moved(n * n, K);
+    for (Index i = 0; i < K; ++i) {
+      const Eigen::MatrixXd& of_mode = F[static_cast<std::size_t>(i)];
+      const Eigen::MatrixXd X = moments.segment(i * n * n, n * n).reshaped(n, n);
+      moved.col(i) = (of_mode * X * of_mode.transpose()).reshaped();
+    }
+    return (moved * model.transition).reshaped();
+  };
+  // The operator maps positive semidefinite matrices to positive semidefinite matrices. So its spectral radius is an
+  // eigenvalue (Krein & Rutman 1948), and no other eigenvalue has a larger real part.
+  const Eigen::MatrixXd white = Eigen::MatrixXd::Identity(n, n);
+  return largest_real_eigenvalue(after_a_step, white.reshaped().replicate(K, 1));
+}
+
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                                                const SwitchingRegression& model, bool one_theta,
-                                                const RefineTuning& tuning) {
+                                                const SwitchingRegression& model, bool one_theta) {
   if (model.modes() < 2) return std::nullopt;
   const LinearStructure& structure = transitions.structure;
   const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model);
@@ -136,7 +162,7 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
     return ScreenedModel{model, {j, share, radius(structure, model, j), reason + " after refinement"}};
   };
   const std::optional<Index> starved = starved_mode(structure, modes);
-  const std::optional<Index> useless = starved ? starved : unstable_mode(structure, model, tuning.growth_slack);
+  const std::optional<Index> useless = starved ? starved : unstable_mode(structure, model, refine_tuning.growth_slack);
   if (useless) {
     ScreenedModel rest = without_mode(*useless, starved ? "starved" : "unstable");
     drop_mode(*useless, rest.model);
@@ -144,7 +170,7 @@ std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& trans
   }
   const auto freedom = static_cast<double>(free_parameters(structure, one_theta));
   const std::optional<DuplicateModes> duplicates =
-      closest_duplicates(modes, 0.5 * chi_square_quantile(tuning.duplicate_significance, freedom));
+      closest_duplicates(modes, 0.5 * chi_square_quantile(refine_tuning.duplicate_significance, freedom));
   if (!duplicates) return std::nullopt;
   ScreenedModel rest = without_mode(duplicates->dropped, fmt::format("duplicate of mode {}", duplicates->kept));
   merge(*duplicates, modes, rest.model);

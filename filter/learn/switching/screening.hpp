@@ -2,11 +2,18 @@
 
 #include <optional>
 
-#include "filter/learn/switching/switching_regression.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "filter/learn/tuning.hpp"
 #include "filter/step/bank.hpp"
 
 namespace modebank {
+
+/// Growth per step of the second moment of x[k+1] = F_j x[k] under switching by T. It is the spectral radius of the
+/// operator X_j -> sum_i T_ij F_i X_i F_i' (Costa, Fragoso & Marques 2005, "Discrete-Time Markov Jump Linear Systems",
+/// chapter 3). Below 1 the system is mean-square stable. The accuracy is 1e-8. For a defective operator (double
+/// integrators) it is about eps^(1 / order of the defect), with the machine precision eps. Infinite if a mode is not
+/// finite.
+double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model);
 
 /// A model after the removal of a mode, and the removed mode.
 struct ScreenedModel {
@@ -25,8 +32,7 @@ struct ScreenedModel {
 ///   removed mode.
 /// `one_theta`: modes differ only in Q, and the test counts only the parameters of Q.
 std::optional<ScreenedModel> without_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                                                const SwitchingRegression& model, bool one_theta,
-                                                const RefineTuning& tuning);
+                                                const SwitchingRegression& model, bool one_theta);
 
 /// The model with its closest pair of modes merged, whatever the cost. The closest pair is the one whose pooling costs
 /// least (see "duplicate" above). Requires at least two modes.
