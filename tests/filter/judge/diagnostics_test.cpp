@@ -65,16 +65,6 @@ TEST(Diagnostics, ATrueFilterHasTheMeansOfItsStatesAndAWrongOneHasNot) {
   }
 }
 
-TEST(Diagnostics, FewSamplesAllowNoVerdictUnlessTheyArePlain) {
-  const Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
-  const DiagnosticsRow few = diagnose_runs(bank, truth_runs(bank, 1, 120)).front();
-  EXPECT_EQ(few.verdict, Calibration::undecided);
-  EXPECT_THAT(few.flags, testing::HasSubstr("too few samples for a verdict"));
-  Bank narrow = bank;
-  narrow.modes[0].Q *= 0.05;
-  EXPECT_EQ(diagnose_runs(narrow, truth_runs(bank, 1, 120)).front().verdict, Calibration::overconfident);
-}
-
 TEST(Diagnostics, NoNeesWhereTheStateIsTheMeasurement) {
   Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-6), 0);
   const std::vector<Trajectory> runs = truth_runs(bank, 2, 800);
@@ -133,6 +123,8 @@ TEST(Diagnostics, FlagsWhatStandsOut) {
   const std::string one = flags(distinct, truth_runs(test::single_mode(bank, 0), 1, 600));
   EXPECT_THAT(one, testing::AllOf(testing::HasSubstr("one mode takes all (0)"), testing::HasSubstr("mode 1 unused"),
                                   testing::Not(testing::HasSubstr("flat"))));
+  EXPECT_THAT(flags(test::single_mode(bank, 0), truth_runs(test::single_mode(bank, 0), 1, 120)),
+              testing::HasSubstr("too few samples for a verdict"));
   // Modes with equal predictions.
   Bank duplicates = bank;
   duplicates.modes[1] = duplicates.modes[0];

@@ -163,31 +163,6 @@ TEST(DriftingHorizon, OneSampleAheadIsTheFilter) {
   }
 }
 
-/// Without drift the model is ARX. Its variance is v times the sum of squares of the impulse response.
-TEST(DriftingHorizon, FixedCoefficientsHaveTheImpulseResponsesVariance) {
-  Bank model = example_drifting(1, 1, 2);
-  model.drift.rates = {0.0, 0.0, 1.0};
-  model.running_noise.lam = 1.0;
-  const Trajectory run = simulate_drifting(model, 60, 9);
-  const double a1 = 1.0 + model.theta(0)(0), a2 = model.theta(0)(1);
-  const std::vector<Index> horizons{1, 2, 3, 7, 20};
-  const std::vector<LevelErrors> errors = level_errors(model, run, horizons);
-  const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, horizons);
-  for (std::size_t h = 0; h < horizons.size(); ++h) {
-    double sum = 0.0, now = 1.0, before = 0.0;
-    for (Index j = 0; j < horizons[h]; ++j) {
-      sum += now * now;
-      const double next = a1 * now + a2 * before;
-      before = now;
-      now = next;
-    }
-    for (Index k = 1 + horizons[h]; k < run.samples(); ++k)
-      EXPECT_NEAR(std::pow(ahead.error[h](0, k) / errors[h].whitened(0, k), 2) / model.noise_variance()(0), sum,
-                  ahead_digits)
-          << "horizon " << horizons[h];
-  }
-}
-
 /// With fixed coefficients and several outputs, the result is the Gaussian prediction of a bank with one mode.
 TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   Bank model = example_drifting(3, 2, 2);

@@ -100,23 +100,6 @@ TEST(Summary, TheTrueBankIsCalibrated) {
   }
 }
 
-TEST(Summary, AWrongProcessNoiseShows) {
-  const Bank truth = test::single_mode(test::example_bank(1, 1, 1), 0);
-  const double best = score(truth, truth, 20000, 13).log_score;
-  for (const double factor : {0.25, 4.0}) {
-    Bank wrong = truth;
-    wrong.modes[0].Q *= factor;
-    const SummaryRow row = score(wrong, truth, 20000, 13);
-    const double bound = binomial_bound(0.025, static_cast<double>(row.samples));
-    EXPECT_GT(std::abs(row.too_far - 0.025), bound) << factor;
-    EXPECT_GT(std::abs(row.nis_above - 0.025), bound) << factor;
-    EXPECT_GT(std::abs(row.too_close - 0.025), bound) << factor;
-    EXPECT_GT(row.pit_distance, 1.95 / std::sqrt(static_cast<double>(row.samples))) << factor;
-    EXPECT_EQ(row.too_far > 0.025, factor < 1.0);
-    EXPECT_LT(row.log_score, best) << factor;
-  }
-}
-
 TEST(Summary, AWrongModelIsNotWhite) {
   const Bank truth = test::single_mode(test::example_bank(1, 1, 1), 0);
   Bank wrong = truth;
@@ -195,16 +178,6 @@ TEST(Summary, WhitenessIsPooledOverRunsByFisher) {
 }
 
 constexpr Index white_samples = 3000;
-
-TEST(InnovationTests, OfTheTrueFilterStayInsideTheirBands) {
-  const Bank bank = test::example_bank(1, 2, 1);
-  const Trajectory run = test::simulate_bank(bank, white_samples, 4);
-  const ResidualTests tests = test_innovations(run, score_run(evaluate_run(bank, run, FilterOptions{})));
-  EXPECT_EQ(tests.samples, white_samples - 1) << "the first sample has no prediction";
-  EXPECT_LE((tests.autocorrelation.rightCols(25).array().abs() > tests.autocorrelation_band).count(), 2);
-  EXPECT_LE((tests.cross_correlation.array().abs() > tests.cross_correlation_band.array().replicate(1, 26)).count(), 4);
-  EXPECT_GT(tests.ljung_box_p(0), 1e-3);
-}
 
 /// The bank lacks an input. The effect of this input appears at lag 0, the lag of the predicted transition.
 TEST(InnovationTests, ShowAnInputThatTheBankIgnores) {

@@ -1,10 +1,8 @@
-// The filter must not return NaN for any input. Fixed and dynamic sizes must give the same bits.
+// The filter must not return NaN for any input.
 #include <gtest/gtest.h>
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/imm.hpp"
-#include "filter/step/samples.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/effort.hpp"
@@ -166,82 +164,6 @@ TEST(DeadMode, ComesBackWhenTheMotionChanges) {
   const RunEvaluation result = evaluate_run(bank, run, {});
   EXPECT_GT(result.mode_probability(0, 399), 0.99);
   EXPECT_GT(result.mode_probability(1, 419), 0.99);
-}
-
-/// Filters `run` with the given sizes. Returns the last state and the log densities, for a comparison of bits.
-template <int N, int NY>
-std::vector<double> trace(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  const FilterModel<N, NY> model(bank, options);
-  FilterStep<N, NY> step(model);
-  FilterState<N> state = initial_state(model);
-  start(model, run.state.col(0), state);
-  std::vector<double> numbers;
-  for (Eigen::Index k = 1; k < run.samples(); ++k) {
-    predict(model, state, run.input.col(k - 1), step);
-    numbers.push_back(update(model, run.state.col(k), step, state));
-    for (const Gaussian<N>& mode : state.modes) {
-      numbers.insert(numbers.end(), mode.mean.begin(), mode.mean.end());
-      for (const double entry : mode.covariance.reshaped()) numbers.push_back(entry);
-    }
-    numbers.insert(numbers.end(), state.mode_probability.begin(), state.mode_probability.end());
-  }
-  return numbers;
-}
-
-template <int N>
-void expect_same_bits() {
-  const Bank modes = example_bank(N, 2, 3);
-  Trajectory run = simulate_bank(modes, 100, 10);
-  run.state(0, 50) = 1e6;
-  for (const FilterVariant variant : all_variants) {
-    const FilterOptions options{variant};
-    const Bank bank = test::steppable(modes, options.variant);
-    const auto fixed = trace<N, N>(bank, run, options);
-    const auto dynamic = trace<Eigen::Dynamic, Eigen::Dynamic>(bank, run, options);
-    EXPECT_EQ(fixed, dynamic) << "n = " << N << ", " << name_of(options.variant);
-  }
-}
-
-TEST(Sizes, FixedAndDynamicGiveTheSameBits) {
-  expect_same_bits<1>();
-  expect_same_bits<2>();
-  expect_same_bits<3>();
-}
-
-/// With lags, the filter starts from several measurements of a signal.
-TEST(Sizes, LaggedBanksToo) {
-  for (const Eigen::Index lags : {2, 3}) {
-    Bank bank = example_bank(1, 1, 3);
-    bank.structure.state_lags = lags;
-    for (Mode& mode : bank.modes) {
-      const Eigen::VectorXd theta = Eigen::VectorXd::Constant(bank.structure.parameters(), -0.1);
-      mode.model = unpack(bank.structure, theta);
-      mode.parameter_covariance.resize(0, 0);
-      const double q = mode.Q(0, 0);
-      mode.Q = Eigen::MatrixXd::Zero(lags, lags);
-      mode.Q(0, 0) = q;
-    }
-    bank.C = Eigen::MatrixXd::Identity(1, lags);
-    Trajectory run = simulate_bank(example_bank(1, 1, 3), 60, 11);
-    run.state(0, 30) = std::nan("");
-    const auto sum = [&]<int N>() {
-      const FilterModel<N, 1> model(bank, {});
-      FilterStep<N, 1> step(model);
-      FilterState<N> state = initial_state(model);
-      double total = 0.0;
-      for_each_sample(bank, run, [&](const SampleFeed& feed, Eigen::Index k, bool starts) {
-        if (starts) return start(model, feed.start(), state);
-        ASSERT_EQ(feed.steps(), 1);
-        predict(model, state, feed.inputs(), step);
-        const double value = update(model, run.state.col(k), step, state);
-        total += std::isnan(value) ? 0.0 : value;
-      });
-      return total;
-    };
-    const double dynamic = sum.operator()<Eigen::Dynamic>();
-    EXPECT_EQ(lags == 2 ? sum.operator()<2>() : sum.operator()<3>(), dynamic);
-    EXPECT_NEAR(log_likelihood(bank, run, {}), dynamic, 1e-11 * std::abs(dynamic));
-  }
 }
 
 }  // namespace
