@@ -87,8 +87,6 @@ std::string why_not_told(const Finding& finding) {
                          std::find_if(finding.gains.begin(), finding.gains.end(), [](const PairedGain& gain) {
                            return !std::isfinite(gain.margin);
                          })->competitor);
-    case Doubt::errors_unknown:
-      return "the standard errors of the modes' parameters are unknown, so the modes may be alike";
     case Doubt::small_gain:
       return fmt::format("{} is less than the {:g} that counts", gain_words(*least_beaten(finding)), negligible_gain);
     case Doubt::short_stays:
@@ -148,12 +146,7 @@ std::string not_yet_words(const Finding& finding) {
 
 std::string no_evidence_words(const Finding& finding) {
   if (finding.best_competitor.empty()) return "No evidence for modes of motion.";
-  if (finding.modes_differ || !finding.errors_known)
-    return "No evidence for modes of motion:" + gain_sentence(finding, " s");
-  const std::string alike =
-      "No evidence for modes of motion: the parameters of the modes differ by no more than their "
-      "errors.";
-  return alike + gain_sentence(finding, " S");
+  return "No evidence for modes of motion:" + gain_sentence(finding, " s");
 }
 
 std::string answer_words(const Finding& finding) {

@@ -5,7 +5,6 @@
 #include <iterator>
 
 #include "filter/step/combined_filter.hpp"
-#include "ident/base/distributions.hpp"
 
 namespace modebank {
 
@@ -90,7 +89,6 @@ Answer answer_by_scores(const Finding& finding) {
   const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
   if (any([](const PairedGain& gain) { return gain.gain + gain.margin < negligible_gain; })) return Answer::no_evidence;
   if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
-  if (!finding.modes_differ) return finding.errors_known ? Answer::no_evidence : Answer::cannot_tell;
   if (any([](const PairedGain& gain) { return !is_beaten(gain); })) return Answer::cannot_tell;
   return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
 }
@@ -171,23 +169,6 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
   return result;
 }
 
-/// Variances of theta; NaN without standard errors.
-Eigen::ArrayXd variances(const Bank& bank, Index mode) {
-  const Eigen::VectorXd& error = bank.modes[static_cast<std::size_t>(mode)].standard_error;
-  const Index parameters = bank.structure.parameters();
-  return error.size() == parameters ? Eigen::ArrayXd(error.array().square())
-                                    : Eigen::ArrayXd::Constant(parameters, not_a_number);
-}
-
-/// Whether `holds` is true for some pair of modes, given the difference of their theta and its variance.
-template <class Holds>
-bool any_pair(const Bank& bank, Holds holds) {
-  for (Index a = 0; a < bank.mode_count(); ++a)
-    for (Index b = 0; b < a; ++b)
-      if (holds((bank.theta(a) - bank.theta(b)).array(), variances(bank, a) + variances(bank, b))) return true;
-  return false;
-}
-
 }  // namespace
 
 const char* description_of(const std::string& competitor) {
@@ -198,28 +179,10 @@ const char* description_of(const std::string& competitor) {
   return "";
 }
 
-bool modes_differ(const Bank& bank) {
-  const Index K = bank.mode_count();
-  const Index pairs = K * (K - 1) / 2;
-  const auto comparisons = static_cast<double>(pairs * bank.structure.parameters());
-  if (K < 2) return false;
-  const double far = normal_quantile(1.0 - 0.025 / comparisons);
-  return any_pair(bank, [far](const Eigen::ArrayXd& difference, const Eigen::ArrayXd& variance) {
-    return (difference.square() > far * far * variance).any();
-  });
-}
-
-bool errors_known(const Bank& bank) {
-  return !any_pair(bank, [](const Eigen::ArrayXd& difference, const Eigen::ArrayXd& variance) {
-    return (difference != 0.0 && !variance.isFinite()).any();
-  });
-}
-
 Doubt doubt_of(const Finding& finding) {
   if (!finding.held_out()) return Doubt::nothing_held_out;
   if (finding.gains.empty()) return Doubt::no_competitor;
   if (!least_beaten(finding)) return Doubt::few_samples;
-  if (!finding.modes_differ) return Doubt::errors_unknown;
   const PairedGain& least = *least_beaten(finding);
   if (!least.told()) return Doubt::within_chance;
   return least.gain < negligible_gain ? Doubt::small_gain : Doubt::short_stays;
@@ -244,8 +207,6 @@ Finding judge_modes(const FindingInputs& in) {
   finding.role = in.role;
   finding.runs = scored_runs(in.bank_densities);
   finding.modes = in.bank.mode_count();
-  finding.modes_differ = modes_differ(in.bank);
-  finding.errors_known = errors_known(in.bank);
   finding.step_scatter = in.step_scatter;
   finding.pattern = in.pattern;
   finding.stay = stay_of(in);

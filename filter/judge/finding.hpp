@@ -46,19 +46,10 @@ struct EnumNames<Description> {
 };
 
 /// Why an answer is `cannot tell`.
-/// - errors_unknown: parameters lack standard errors, so modes may be alike.
 /// - within_chance: the gain over some competitor is not significant.
 /// - small_gain: the gain is significant but too small.
 /// - short_stays: Finding::stay is below stay_asked.
-enum class Doubt {
-  nothing_held_out,
-  no_competitor,
-  few_samples,
-  errors_unknown,
-  within_chance,
-  small_gain,
-  short_stays
-};
+enum class Doubt { nothing_held_out, no_competitor, few_samples, within_chance, small_gain, short_stays };
 
 /// Loss below which a description counts as equally good [nats per sample]. The choice of the number of modes uses the
 /// same value (rule.hpp).
@@ -103,17 +94,14 @@ struct BetterMean {
 struct Finding {
   Answer answer = Answer::cannot_tell;
   Role role = Role::test;
-  Eigen::Index runs = 0;       ///< number of judged runs with scored samples
-  bool stretches = false;      ///< whether the runs are stretches of one drive; filled in by the output
-  Eigen::Index modes = 0;      ///< number of modes of the bank
-  bool modes_differ = false;   ///< whether the modes differ in theta by more than their errors
-  bool errors_known = true;    ///< `errors_known` of the bank. If false, modes may differ although `modes_differ` is
-                               ///< false
-  double step_scatter = 0.0;   ///< standard deviation of the time steps, divided by their median
-  ErrorPattern pattern;        ///< pattern in the errors of the bank
-  double stay = not_a_number;  ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
-                               ///< unknown
-  double stay_asked = 0.0;     ///< smallest stay for evidence [samples]
+  Eigen::Index runs = 0;              ///< number of judged runs with scored samples
+  bool stretches = false;             ///< whether the runs are stretches of one drive; filled in by the output
+  Eigen::Index modes = 0;             ///< number of modes of the bank
+  double step_scatter = 0.0;          ///< standard deviation of the time steps, divided by their median
+  ErrorPattern pattern;               ///< pattern in the errors of the bank
+  double stay = not_a_number;         ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
+                                      ///< unknown
+  double stay_asked = 0.0;            ///< smallest stay for evidence [samples]
   std::vector<Resolution> repeating;  ///< states for which densities are not comparable
   bool without_noise = false;         ///< whether one linear model explains the runs up to rounding
   bool terms_asked = false;           ///< whether terms of one nonlinear motion were searched on the training runs
@@ -131,12 +119,6 @@ struct Finding {
 
   bool held_out() const { return role == Role::test; }
 };
-
-/// Whether some pair of modes differs significantly in a parameter. The level is 95 % for all pairs and parameters
-/// together (Bonferroni). Parameters without a standard error are ignored.
-bool modes_differ(const Bank& bank);
-/// Whether every parameter that differs between modes has a standard error.
-bool errors_known(const Bank& bank);
 
 /// The first reason for the answer `cannot tell` in the numbers of a finding.
 Doubt doubt_of(const Finding& finding);
@@ -161,13 +143,12 @@ struct FindingInputs {
 /// Decides whether the runs require modes.
 /// - not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
 /// - one mode: the bank has one mode, or one linear model leaves no noise (scores are then scores of rounding).
-/// - evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, the modes differ,
-///   and stays are long enough. A stay must last at least five samples and the memory of the model. Shorter stays
-///   appear with noisy inputs or a delay that differs between runs; competitors do not model these effects.
-/// - no evidence: the gain over a competitor is known to be negligible, since even its upper limit is, or all modes
-///   have the same theta.
-/// - cannot tell: all other cases, such as no held-out runs, too few samples for a margin, or modes with unknown
-///   errors.
+/// - evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, and stays are long
+///   enough. Modes that differ in noise alone gain nothing over `one_motion`, which has their noises. A stay must last
+///   at least five samples and the memory of the model. Shorter stays appear with noisy inputs or a delay that differs
+///   between runs; competitors do not model these effects.
+/// - no evidence: the gain over a competitor is known to be negligible, since even its upper limit is.
+/// - cannot tell: all other cases, such as no held-out runs, or too few samples for a margin.
 /// If the bank is not significantly better than the best competitor, better_description is the simplest competitor that
 /// is as good as these two. A competitor is as good if it loses less than 0.02 nats, or if neither a t-test nor
 /// Wilcoxon's test over runs separates the two.

@@ -216,7 +216,6 @@ void exchange_finding(Io& io, F& finding) {
   io.attribute("role", finding.role);
   io.attribute("runs", finding.runs);
   io.attribute("modes", finding.modes);
-  io.attribute("modes_differ", finding.modes_differ);
   io.attribute_unless(false, "without_noise", finding.without_noise);
   io.attribute("best_competitor", finding.best_competitor);
   io.attribute("gain", finding.gain);

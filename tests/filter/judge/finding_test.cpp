@@ -28,7 +28,7 @@ Densities scores_of(const std::string& filter, double gain, double own_noise = 0
 }
 
 struct Case {
-  Bank bank = with_errors(test::example_bank(1, 2, 2), 1e-3);
+  Bank bank = test::example_bank(1, 2, 2);
   Role role = Role::test;
   double bank_gain = 0.3;
   std::vector<Densities> competitors{scores_of("baseline", 0.0), scores_of("noise_only", 0.1),
@@ -41,10 +41,6 @@ struct Case {
   std::vector<DiagnosticsRow> diagnostics;
   ErrorPattern pattern;
 
-  static Bank with_errors(Bank bank, double error) {
-    for (Mode& mode : bank.modes) mode.standard_error = VectorXd::Constant(bank.structure.parameters(), error);
-    return bank;
-  }
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
     return judge_modes(
@@ -175,38 +171,8 @@ TEST(Finding, WithoutHeldOutRunsOrCompetitorsNothingIsClaimed) {
 
 TEST(Finding, OneModeIsNotAskedFor) {
   Case one;
-  one.bank = Case::with_errors(test::single_mode(test::example_bank(1, 2, 2), 0), 1e-3);
+  one.bank = test::single_mode(one.bank, 0);
   EXPECT_EQ(one.judged().answer, Answer::one_mode);
-}
-
-TEST(Finding, ModesOfTheSameParametersAreNoModesOfMotion) {
-  Case same;
-  same.bank.modes[1].model = same.bank.modes[0].model;
-  EXPECT_FALSE(modes_differ(same.bank));
-  EXPECT_EQ(same.judged().answer, Answer::no_evidence);
-  Case vague;  // parameters differ by at most 0.1
-  vague.bank = Case::with_errors(vague.bank, 0.1);
-  EXPECT_FALSE(modes_differ(vague.bank));
-  EXPECT_TRUE(modes_differ(Case().bank));
-}
-
-// Without standard errors (after a fit to predictions several steps ahead, or if theta is undetermined), the modes may
-// be alike.
-TEST(Finding, ModesOfUnknownErrorsTellNothing) {
-  Case unknown;
-  unknown.bank = Case::with_errors(unknown.bank, std::nan(""));
-  EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
-  EXPECT_EQ(doubt_of(unknown.judged()), Doubt::errors_unknown);
-  for (Mode& mode : unknown.bank.modes) mode.standard_error.resize(0);
-  EXPECT_EQ(unknown.judged().answer, Answer::cannot_tell);
-  unknown.bank.modes[1].model = unknown.bank.modes[0].model;
-  EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "the same, whatever the errors";
-  Case some;  // one parameter with a known error separates the modes
-  some.bank.modes[0].standard_error(0) = std::nan("");
-  EXPECT_EQ(some.judged().answer, Answer::evidence);
-  unknown.bank = Case::with_errors(Case().bank, std::nan(""));
-  unknown.bank_gain = 0.0;
-  EXPECT_EQ(unknown.judged().answer, Answer::no_evidence) << "a competitor has the higher score";
 }
 
 // The baseline loses 0.4 nats in each of six runs. In one run `drifting` gains 2.6 nats more. This makes the t-test
@@ -232,22 +198,6 @@ TEST(Finding, AMotionThatBendsIsNamedWhereItBeatsAllSimplerOnes) {
   EXPECT_EQ(bent.judged().description, Description::one_drifting_motion);
   bent.bank_gain = 0.8;
   EXPECT_EQ(bent.judged().answer, Answer::evidence);
-}
-
-// With one parameter and two modes, the limit of (difference / standard error) is the normal quantile 1.96.
-TEST(Finding, TheLimitForOneComparisonIsTheNormalQuantile) {
-  Bank bank = test::example_bank(1, 0, 2);
-  bank.structure = {1, 0, false};
-  for (Mode& mode : bank.modes) {
-    mode.model.B.resize(1, 0);
-    mode.model.c.setZero();
-    mode.standard_error = VectorXd::Constant(1, 3.0);
-  }
-  bank.modes[0].model.A(0, 0) = 0.0;
-  bank.modes[1].model.A(0, 0) = 1.95 * std::sqrt(18.0);
-  EXPECT_FALSE(modes_differ(bank));
-  bank.modes[1].model.A(0, 0) = 1.97 * std::sqrt(18.0);
-  EXPECT_TRUE(modes_differ(bank));
 }
 
 // One motion with time steps of many lengths looks like several modes. The limit is a scatter of 10 % of the median.

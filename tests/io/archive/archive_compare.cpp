@@ -119,7 +119,7 @@ void list(Listing& to, const PairedGain& g) {
 }
 void list(Listing& to, const BetterMean& m) { to(m.competitor, m.horizon, m.state, m.rmse_bank, m.rmse); }
 void list(Listing& to, const Finding& f) {
-  to(f.answer, f.role, f.runs, f.modes, f.modes_differ, f.best_competitor, f.gain, f.standard_error, f.description);
+  to(f.answer, f.role, f.runs, f.modes, f.best_competitor, f.gain, f.standard_error, f.description);
   to(f.stay, f.stay_asked, f.terms_asked, f.pattern.gain, f.pattern.standard_error, f.better_description, f.equations);
   to(f.text, f.gains, f.better_means);
 }

@@ -113,7 +113,6 @@ Finding make_finding() {
   finding.role = Role::test;
   finding.runs = 3;
   finding.modes = 3;
-  finding.modes_differ = true;
   finding.gains = {{"baseline", 30, 1.25, 0.25, 5.0, 0.5, false, 0.03125},
                    {"one_motion", 29, -0.125, 0.0625, 11.0, 0.125, true, 0.75}};
   finding.best_competitor = "one_motion";
