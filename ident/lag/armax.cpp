@@ -97,9 +97,8 @@ class Fitter {
   static double count(const VectorXd& weight) { return static_cast<double>((weight.array() > 0.0).count()); }
   /// Positive definite even if all errors are zero.
   static MatrixXd covariance(const MatrixXd& e, const VectorXd& weight) {
-    constexpr double tiny = 1e-200;
     const MatrixXd sum = e * weight.asDiagonal() * e.transpose();
-    return sum / count(weight) + tiny * MatrixXd::Identity(e.rows(), e.rows());
+    return sum / count(weight) + 1e-200 * MatrixXd::Identity(e.rows(), e.rows());
   }
 
   /// Scores each part by one further step without its fold, not halved: a structure that is not determined without it
@@ -140,7 +139,8 @@ class Fitter {
     companion.topRows(n_) = -C;
     companion.bottomLeftCorner(s - n_, s - n_).setIdentity();
     const double shrunk = std::min(1.0, most_root / eigenvalues(companion).cwiseAbs().maxCoeff());
-    for (Index j = 0; j < s; ++j) C.col(j) *= std::pow(shrunk, static_cast<double>(j / n_ + 1));
+    for (Index lag = 1; lag <= nc_; ++lag)
+      C.middleCols((lag - 1) * n_, n_) *= std::pow(shrunk, static_cast<double>(lag));
     return all;
   }
 

@@ -83,7 +83,7 @@ std::vector<Index> found_delays(const ArmaxSamples& samples, const std::vector<I
   constexpr int proposals = 4;
   constexpr double delay_nats = 2.0, acting_nats = 6.0;
   const ArmaxOrder start{samples.differences, 2, 2, samples.differences ? 3 : 2};
-  ArmaxStructure tried = fit ? ArmaxStructure(*fit) : ArmaxStructure{start, least};
+  ArmaxStructure tried{fit ? fit->order : start, fit ? fit->delays : least};
   for (std::size_t i = 0; i < least.size(); ++i) {
     Index& delay = tried.delays[i];
     const Index now = delay;
