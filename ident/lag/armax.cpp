@@ -17,8 +17,8 @@ using Eigen::VectorXd;
 MatrixXd regressors(const ArmaxSamples& samples, const ArmaxStructure& structure) {
   const ArmaxOrder& order = structure.order;
   const Index n = samples.y.rows(), m = samples.u.rows(), N = samples.y.cols();
-  MatrixXd X(n * (order.state_lags + order.noise_lags) + m * order.input_lags + order.has_constant(), N);
-  X.setZero();
+  MatrixXd X =
+      MatrixXd::Zero(n * (order.state_lags + order.noise_lags) + m * order.input_lags + order.has_constant(), N);
   Index at = 0;
   const auto put = [&](const auto& signal, Index lag) {
     X.block(at, lag, signal.rows(), N - lag) = signal.leftCols(N - lag);
@@ -119,7 +119,7 @@ class Fitter {
       for (const Stretch& stretch : stretches_)
         if (fold_of(stretch.first_row) == fold) nats(samples_.parts.part[stretch.first_row]) += stretch.nats;
     }
-    const double huge = 1e100;  // errors that grew without bound
+    constexpr double huge = 1e100;  // errors that grew without bound
     all = all.array().isFinite().select(all, huge);
     LeftOutForecast forecast = left_out_forecast(all, samples_.parts, VectorXd::Zero(n_));
     forecast.of_part -= nats.array().isFinite().select(nats, huge).matrix();
@@ -132,13 +132,11 @@ class Fitter {
   /// Shrinks roots of C to .995 where they are larger.
   MatrixXd bounded(MatrixXd all) const {
     constexpr double most_root = 0.995;
-    const Index s = n_ * nc_;
-    if (s == 0) return all;
-    auto C = all.rightCols(s);
-    MatrixXd companion = MatrixXd::Zero(s, s);
-    companion.topRows(n_) = -C;
-    companion.bottomLeftCorner(s - n_, s - n_).setIdentity();
-    const double shrunk = std::min(1.0, most_root / eigenvalues(companion).cwiseAbs().maxCoeff());
+    if (nc_ == 0) return all;
+    auto C = all.rightCols(n_ * nc_);
+    const VectorXd increments = (-C - MatrixXd::Identity(n_, C.cols())).reshaped<Eigen::RowMajor>();
+    const double radius = spectral_radius(unpack({.states = n_, .state_lags = nc_}, increments));
+    const double shrunk = std::min(1.0, most_root / radius);
     for (Index lag = 1; lag <= nc_; ++lag)
       C.middleCols((lag - 1) * n_, n_) *= std::pow(shrunk, static_cast<double>(lag));
     return all;

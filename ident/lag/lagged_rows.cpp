@@ -104,6 +104,20 @@ std::vector<Index> LaggedRows::columns(const LinearStructure& structure) const {
   return chosen;
 }
 
+StretchParts stretch_parts(const std::vector<Index>& run, Index runs, Index fewest_runs, Index fewest_parts) {
+  StretchParts parts{run, runs, runs >= fewest_runs};
+  if (parts.by_runs || runs == 0) return parts;
+  const Index stretches = (fewest_parts + runs - 1) / runs;
+  std::vector<Index> length(static_cast<std::size_t>(runs), 0), seen = length;
+  for (const Index r : parts.part) ++length[static_cast<std::size_t>(r)];
+  for (Index& part : parts.part) {
+    const auto r = static_cast<std::size_t>(part);
+    part = part * stretches + seen[r]++ * stretches / length[r];
+  }
+  parts.count = runs * stretches;
+  return parts;
+}
+
 LaggedRows make_lagged_rows(const Recording& recording, const StructureRanges& ranges, bool intercept) {
   const LinearStructure widest = widest_of(recording, ranges, intercept);
   LaggedRows rows;

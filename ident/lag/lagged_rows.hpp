@@ -4,10 +4,20 @@
 #include <vector>
 
 #include "ident/data/trajectory.hpp"
-#include "ident/lag/stretch_parts.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
+
+/// Parts of the data that are left out together. They are whole runs, or stretches of runs if there are few runs.
+struct StretchParts {
+  std::vector<Index> part;  ///< N, index of each row's part
+  Index count = 0;
+  bool by_runs = false;  ///< true: the parts are whole runs; false: stretches of runs
+};
+
+/// Divides rows into parts. With `fewest_runs` or more, the parts are the runs. Fewer runs are cut into at least
+/// `fewest_parts` stretches with about equal numbers of rows. `run`: N, index of each row's run, below `runs`.
+StretchParts stretch_parts(const std::vector<Index>& run, Index runs, Index fewest_runs = 6, Index fewest_parts = 10);
 
 /// An inclusive range of numbers of lags.
 struct LagRange {

@@ -54,7 +54,7 @@ ArmaxSamples gather(const Recording& recording, Index first) {
     }
     if (!run_of_row.empty() && run_of_row.back() == runs) ++runs;
   }
-  samples.parts = stretch_parts(std::move(run_of_row), runs, 4, 5);
+  samples.parts = stretch_parts(run_of_row, runs, 4, 5);
   return samples;
 }
 
@@ -82,7 +82,7 @@ double half_deviance(const ArmaxSamples& samples, const MatrixXd& S) {
 std::vector<Index> found_delays(const ArmaxSamples& samples, const std::vector<Index>& least, const ArmaxFit* fit) {
   constexpr int proposals = 4;
   constexpr double delay_nats = 2.0, acting_nats = 6.0;
-  const ArmaxOrder start{samples.differences, 2, 2, samples.differences ? 3 : 2};
+  const ArmaxOrder start{samples.differences, 2, 2, 2 + samples.differences};
   ArmaxStructure tried{fit ? fit->order : start, fit ? fit->delays : least};
   for (std::size_t i = 0; i < least.size(); ++i) {
     Index& delay = tried.delays[i];

@@ -1,6 +1,9 @@
 #include "ident/model/linear_model.hpp"
 
 #include <cassert>
+#include <limits>
+
+#include "ident/base/linalg.hpp"
 
 namespace modebank {
 
@@ -63,6 +66,11 @@ Eigen::VectorXd pack(const LinearStructure& s, const LinearModel& model) {
   if (s.intercept) rows.rightCols(1) = model.c.head(s.states);
   if (!s.centre.empty()) rows.rightCols(1) += rows.leftCols(s.regressors() - 1) * s.acting_centre();
   return Eigen::Map<const Eigen::VectorXd>(rows.data(), rows.size());
+}
+
+double spectral_radius(const LinearModel& model) {
+  if (!model.A.allFinite()) return std::numeric_limits<double>::infinity();
+  return eigenvalues(model.full_form()).cwiseAbs().maxCoeff();
 }
 
 }  // namespace modebank

@@ -89,6 +89,9 @@ struct LinearModel {
   Eigen::MatrixXd full_form() const { return A + Eigen::MatrixXd::Identity(A.rows(), A.cols()); }
 };
 
+/// Largest absolute eigenvalue of I + A; infinite if A is not finite.
+double spectral_radius(const LinearModel& model);
+
 /// Converts theta to matrices with companion rows, and back. pack ignores the companion rows.
 LinearModel unpack(const LinearStructure& structure, const Eigen::VectorXd& theta);
 Eigen::VectorXd pack(const LinearStructure& structure, const LinearModel& model);

@@ -72,7 +72,7 @@ StepResponse response(const LinearStructure& s, const VectorXd& theta, const std
   StepResponse found;
   for (const auto number : numbers) (found.*number).setConstant(s.states, s.inputs, not_a_number);
   const LinearModel model = unpack(s, theta);
-  found.radius.fill(eigenvalues(model.full_form()).cwiseAbs().maxCoeff());
+  found.radius.fill(spectral_radius(model));
   if (!(found.radius(0) < unit_circle)) return found;
   MatrixXd held = MatrixXd::Zero(s.dimension(), s.inputs);
   for (Index first = 0; first < s.acting_inputs(); first += s.inputs) held += model.B.middleCols(first, s.inputs);

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "ident/base/clustered_error.hpp"
-#include "ident/lag/stretch_parts.hpp"
+#include "ident/lag/lagged_rows.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
@@ -44,7 +44,7 @@ RunRegression rows_of(const Trajectory& run, const LinearStructure& widest, Inde
 
 /// Cuts the parts into stretches if there are few parts.
 void cut_few_parts(TermRows& rows) {
-  StretchParts cut = stretch_parts(std::move(rows.part), rows.parts);
+  StretchParts cut = stretch_parts(rows.part, rows.parts);
   rows.part = std::move(cut.part);
   rows.parts = cut.count;
 }

@@ -37,8 +37,8 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
                       const NoiseFactor& factor = {});
 
 /// The same competitor beside a baseline. If that is the linear stage's, whose R is known beside Q, and without a
-/// factor: its theta, C and R with eight levels of its Q, from a quarter to 32 times (residuals of exact states would
-/// count R twice), or learn_noise_only with exact states if that is more likely on the training runs.
+/// factor: its theta, C and R with eight levels of its Q, from a quarter to 32 times (residuals of exact states
+/// count R twice), if they are more likely on the training runs than learn_noise_only.
 Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
                        const LinearStructure& structure, const NoiseFactor& factor);
 

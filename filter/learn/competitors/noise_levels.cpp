@@ -117,7 +117,8 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
 
 Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
                        const LinearStructure& structure, const NoiseFactor& factor) {
-  if (!of_linear_stage || !factor.empty()) return learn_noise_only(recording, structure, baseline.R, factor);
+  Bank exact = learn_noise_only(recording, structure, baseline.R, factor);
+  if (!of_linear_stage || !factor.empty()) return exact;
   constexpr double lowest = 0.25, step = 2.0, least_share_of_R = 0.01;
   Bank bank = baseline;
   const Index n = baseline.structure.states;
@@ -131,8 +132,6 @@ Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recordi
     bank.modes.push_back(mode);
   }
   const double likelihood = choose_stay(bank, recording);
-  if (baseline.R_standard_error.isZero(0.0)) return bank;  // R is stated
-  const Bank exact = learn_noise_only(recording, structure, Eigen::MatrixXd::Zero(n, n), factor);
   return training_log_likelihood(exact, recording, FilterOptions{}) > likelihood ? exact : bank;
 }
 

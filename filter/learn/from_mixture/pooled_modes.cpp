@@ -1,7 +1,6 @@
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 
 #include <algorithm>
-#include <limits>
 #include <optional>
 #include <unsupported/Eigen/KroneckerProduct>
 
@@ -120,12 +119,6 @@ ModeEstimate fit_weighted_mode(const TrainingTransitions& transitions, const Eig
     converged = (Q - previous).norm() <= alternation_tolerance * previous.norm();
   }
   return {beta.reshaped(), Q, standard_errors(data, Q, prior), data.sums.weight, converged};
-}
-
-double spectral_radius(const LinearModel& model) {
-  if (!model.A.allFinite()) return std::numeric_limits<double>::infinity();
-  const Eigen::MatrixXd full = Eigen::MatrixXd::Identity(model.A.rows(), model.A.cols()) + model.A;
-  return eigenvalues(full).cwiseAbs().maxCoeff();
 }
 
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode) {

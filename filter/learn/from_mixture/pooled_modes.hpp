@@ -63,9 +63,6 @@ Eigen::MatrixXd floored_process_noise(const Eigen::MatrixXd& Q, const GlobalMode
 /// because of rounding.
 inline constexpr double spectral_radius_slack = 1e-9;
 
-/// Largest absolute eigenvalue of I + A; infinite if A is not finite.
-double spectral_radius(const LinearModel& model);
-
 /// Reason why a bank cannot use a mode: "starved" (fewer effective transitions than regressors + 1) or "unstable"
 /// (spectral radius of I + A above 1). Empty if the mode is usable.
 std::string screening_reason(const LinearStructure& structure, const ModeEstimate& mode);

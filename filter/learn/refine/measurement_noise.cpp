@@ -63,13 +63,18 @@ LikelihoodTarget target_of(const RefineInput& in, const Recording& recording, co
   return {recording, learning_filter, prior_with_states_unknown(exact, bank), in.options.one_theta};
 }
 
-/// Maximises the likelihood over theta, Q, T and (`with_R`) R of a bank together.
+/// Maximises the likelihood over theta, Q, T and (`with_R`) R of a bank together. An R that the likelihood does not see
+/// is the least one: rounding would decide its digits.
 MeasurementNoise maximise_everything(const RefineInput& in, const Recording& recording,
                                      const TrainingTransitions& transitions, const SwitchingPrior& exact,
                                      const Bank& bank, bool with_R) {
   const LikelihoodTarget target = target_of(in, recording, exact, bank);
   LikelihoodMaximum maximum = maximise_likelihood(target, everything(in, transitions, target, bank, with_R), bank,
                                                   {in.options.max_iterations, in.options.tolerance});
+  Bank least = maximum.bank;
+  if (with_R) least.R = least.R.cwiseMin(Eigen::MatrixXd(in.least_R().asDiagonal()));
+  const double unseen = in.options.tolerance * static_cast<double>(recording.transitions(Role::train));
+  if (with_R && target.value(least) > maximum.value - unseen) maximum.bank = std::move(least);
   return {std::move(maximum.bank), *target.prior, 0, maximum.iterations, maximum.end};
 }
 
@@ -163,12 +168,6 @@ MeasurementNoise find_measurement_noise(const RefineInput& in, const Recording& 
   // From here on, the prior is that of a Q without R. That of exact states includes R, and would be too large.
   result = maximise_everything(in, recording, transitions, exact, best->bank, true);
   result.failed_starts = failed;
-  if (!result.bank) return result;
-  // Of an R that the likelihood does not see, rounding would decide the digits.
-  Bank least = *result.bank;
-  least.R = least.R.cwiseMin(Eigen::MatrixXd(in.least_R().asDiagonal()));
-  const LikelihoodTarget end = target_of(in, recording, exact, best->bank);
-  if (end.value(least) > end.value(*result.bank) - in.options.tolerance * samples) result.bank = std::move(least);
   return result;
 }
 

@@ -6,7 +6,7 @@
 #include "filter/learn/switching/regression.hpp"
 #include "modebank/learn/results.hpp"
 
-/// Transition probabilities that depend on state and input (step/transition_logit.hpp): a multinomial logit of the
+/// Transition probabilities that depend on state and input (TransitionLogit): a multinomial logit of the
 /// regressors (x, v), with a row of offsets for each previous mode.
 namespace modebank {
 
