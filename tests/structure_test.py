@@ -29,7 +29,7 @@ MAY_INCLUDE = {
     "mixture": IDENT,
     "filter/step": IDENT,
     "filter/judge": STEP,
-    "filter/learn": FIT + ["mixture", "filter/step", "filter/judge"],
+    "filter/learn": FIT + ["ident/lag", "mixture", "filter/step", "filter/judge"],
     "filter/learn/chain": FIT + ["ident/lag", "ident/terms", "mixture", "filter/step", "filter/judge", "filter/learn"],
     "io/files": IDENT[:1],
     "io/hdf5": IDENT[:1],

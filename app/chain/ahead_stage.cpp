@@ -3,8 +3,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <string>
-#include <vector>
 
 #include "app/chain/stages.hpp"
 #include "app/text/judged_runs.hpp"

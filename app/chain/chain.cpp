@@ -10,7 +10,6 @@
 #include "app/text/mode_dynamics.hpp"
 #include "app/text/mode_names.hpp"
 #include "filter/learn/chain/chain.hpp"
-#include "io/import/import.hpp"
 
 namespace modebank {
 

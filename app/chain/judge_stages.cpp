@@ -10,7 +10,7 @@
 #include "filter/judge/combination.hpp"
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/evaluate.hpp"
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/judge/statistics.hpp"
 #include "ident/base/work_counter.hpp"

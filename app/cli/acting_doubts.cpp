@@ -13,7 +13,7 @@
 #include "app/cli/log/joined_inputs.hpp"
 #include "app/config/option_text.hpp"
 #include "app/text/structure_text.hpp"
-#include "filter/learn/chain/stages.hpp"
+#include "filter/learn/competitors/competitors.hpp"
 #include "ident/data/stretch.hpp"
 #include "ident/lag/linear_stage.hpp"
 #include "ident/lag/structure_search.hpp"

@@ -2,14 +2,18 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-
-#include <nlohmann/json.hpp>
+#include <tbb/global_control.h>
 
 #include "app/chain/build_info.hpp"
+#include "app/cli/check/check_output.hpp"
 #include "app/cli/command_table.hpp"
+#include "app/cli/dry_run.hpp"
 #include "app/cli/help_text.hpp"
 #include "app/cli/log.hpp"
-#include "app/cli/result.hpp"
+#include "app/cli/progress_meter.hpp"
+#include "app/config/config_file.hpp"
+#include "app/study/answers/study_json.hpp"
+#include "app/study/study.hpp"
 #include "ident/base/nearest_name.hpp"
 #include "modebank/base/error.hpp"
 
@@ -56,6 +60,29 @@ int run_command(const CommandLine& line) {
   else
     refuse_command(line.command);
   return 0;
+}
+
+int run_check(const CommandLine& line) {
+  const Config config = load_config(line.files.front(), line.overrides);
+  validate(config);
+  const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, config.job.thread_count());
+  const ProgressMeter meter(!line.quiet);
+  const DataCheck check = check_data({data_options_of(config), config.window.length, config.window.intercept});
+  const std::vector<std::string> findings = findings_of(check, config);
+  print_text(line, check_text(check, findings));
+  print_json(line, check_json(check, findings), check.unusable.empty() ? 0 : 1);
+  if (!check.unusable.empty()) throw DataError("unusable as configured: " + unusable_text(check));
+  return 0;
+}
+
+int run_study(const CommandLine& line) {
+  const std::string& file = line.files.front();
+  const Config config = load_config(file, line.overrides);
+  if (line.dry_run) return print_result(line, dry_run(config, {config.study.output}));
+  const auto say = [&](const std::string& text) { print_text(line, text); };
+  const int status = do_study({config, file, line.overrides, line.typed, say});
+  if (line.json) print_json(line, study_json(config.study.output), status);
+  return status;
 }
 
 }  // namespace modebank::app

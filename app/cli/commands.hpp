@@ -21,6 +21,10 @@ int run_demo(const CommandLine& line);
 int run_check(const CommandLine& line);
 int run_simulate(const CommandLine& line);
 Result do_simulate(const CommandLine& line);  ///< same as the command simulate, without printing
+/// Reads the parameters of the system that simulate.system names. The name is a file with a section [system], relative
+/// to `folder`, or a built-in system (configs/systems). Throws ConfigurationError with file and line, also for a
+/// parameter that this kind of system does not have.
+void read_system(const std::filesystem::path& folder, Config& config);
 int run_report(const CommandLine& line);
 int run_study(const CommandLine& line);
 int run_show(const CommandLine& line);

@@ -10,7 +10,6 @@
 #include "app/text/mode_names.hpp"
 #include "app/text/mode_words.hpp"
 #include "app/text/number_text.hpp"
-#include "app/text/screen_facts.hpp"
 #include "app/text/terminal.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/base/not_a_number.hpp"

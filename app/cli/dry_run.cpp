@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <boost/algorithm/string/replace.hpp>
 
-#include "app/config/config_file.hpp"
 #include "app/config/ini_lines.hpp"
 #include "app/config/option_table.hpp"
 #include "app/text/terminal.hpp"

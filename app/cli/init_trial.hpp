@@ -7,9 +7,8 @@
 
 namespace modebank::app {
 
-/// Returns the error with which `run` would refuse the configuration before any fit; empty if `run` accepts it. Reads
-/// the configuration, imports the data and cuts windows, but does not estimate the lag. `target`: path of the
-/// configuration file.
+/// Returns the error with which `run` would refuse the configuration before any fit, apart from the lag; empty if `run`
+/// accepts it. `target`: path of the configuration file.
 std::string refusal(const Proposal& proposal, const std::filesystem::path& target);
 
 /// Removes keys that no longer exist. Quotes values that the parser of a configuration line would cut or trim.

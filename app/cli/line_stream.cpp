@@ -15,6 +15,7 @@ namespace modebank::app {
 namespace {
 
 constexpr std::size_t longest_line = 1 << 20;
+constexpr int stop_signals[] = {SIGINT, SIGTERM};
 
 volatile std::sig_atomic_t stop_asked = 0;
 sigset_t outside_mask;
@@ -43,20 +44,17 @@ LineStream::LineStream() {
   stop_asked = 0;
   sigset_t held;
   sigemptyset(&held);
-  sigaddset(&held, SIGINT);
-  sigaddset(&held, SIGTERM);
+  for (const int signal : stop_signals) sigaddset(&held, signal);
   sigprocmask(SIG_BLOCK, &held, &outside_mask);
-  sigdelset(&outside_mask, SIGINT);
-  sigdelset(&outside_mask, SIGTERM);
-  handle(SIGINT, ask_to_stop);
-  handle(SIGTERM, ask_to_stop);
+  for (const int signal : stop_signals) {
+    sigdelset(&outside_mask, signal);
+    handle(signal, ask_to_stop);
+  }
   handle(SIGPIPE, SIG_IGN);
 }
 
 LineStream::~LineStream() {
-  handle(SIGINT, SIG_DFL);
-  handle(SIGTERM, SIG_DFL);
-  handle(SIGPIPE, SIG_DFL);
+  for (const int signal : {SIGINT, SIGTERM, SIGPIPE}) handle(signal, SIG_DFL);
   sigprocmask(SIG_SETMASK, &outside_mask, nullptr);
 }
 

@@ -5,10 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <span>
-#include <stdexcept>
 
-#include "app/cli/json_line.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/utf8.hpp"
 #include "io/csv/csv.hpp"
@@ -23,20 +20,6 @@ namespace modebank::app {
 namespace {
 
 constexpr const char* stream_name = "standard input";
-
-/// A table reader that has only columns and no rows, for a plan.
-class ColumnsAlone final : public TableReader {
- public:
-  explicit ColumnsAlone(TableInfo table) : table_(std::move(table)) {}
-  std::vector<TableInfo> tables() const override { return {table_}; }
-  InputFile describe(const std::vector<TableRequest>&) const override { throw std::logic_error("no rows yet"); }
-  std::vector<Table> read(const std::vector<TableRequest>&, InputFile*) const override {
-    throw std::logic_error("no rows yet");
-  }
-
- private:
-  TableInfo table_;
-};
 
 bool holds(const std::vector<std::string>& all, const std::string& one) {
   return std::find(all.begin(), all.end(), one) != all.end();
@@ -62,12 +45,57 @@ void derive_what_lacks(DataOptions& data, const std::vector<std::string>& column
 
 ColumnInfo column_of(const std::string& name) { return {name, std::string(split_unit(name).unit), {}}; }
 
-/// Adds the columns from which a channel is read or computed.
-void add_operands(const DerivedChannels& derived, const std::string& channel, std::vector<std::string>& columns) {
-  const DerivedChannel* const computed = derived.find(channel);
-  if (computed == nullptr && !holds(columns, channel)) columns.push_back(channel);
-  if (computed != nullptr)
-    for (const std::string& operand : computed->expression.channels()) add_operands(derived, operand, columns);
+/// Adds the columns from which channels are read or computed.
+void add_columns(const DerivedChannels& derived, const std::vector<std::string>& channels,
+                 std::vector<std::string>& columns) {
+  for (const std::string& channel : channels)
+    if (const DerivedChannel* const computed = derived.find(channel); computed != nullptr)
+      add_columns(derived, computed->expression.channels(), columns);
+    else if (!holds(columns, channel))
+      columns.push_back(channel);
+}
+
+/// Replaces NaN and infinities outside strings by null.
+std::string without_bare_nan(std::string_view line) {
+  std::string result;
+  bool quoted = false;
+  for (std::size_t k = 0; k < line.size();) {
+    std::size_t word = 0;
+    for (const std::string_view name : {"NaN", "nan", "-Infinity", "Infinity"})
+      if (word == 0 && !quoted && line.substr(k).starts_with(name)) word = name.size();
+    if (word > 0) result += "null";
+    k += word;
+    if (word > 0) continue;
+    if (line[k] == '"') quoted = !quoted;
+    if (quoted && line[k] == '\\' && k + 1 < line.size()) result += line[k++];  // the next character is escaped
+    result += line[k++];
+  }
+  return result;
+}
+
+/// Parses a line of NDJSON. The result is_discarded() for other text. Many programs write NaN and Infinity; these
+/// become null.
+nlohmann::json parse_json_line(std::string_view line) {
+  std::string storage;
+  line = utf8_or_windows_1252(line, storage);
+  nlohmann::json object = nlohmann::json::parse(line, nullptr, false);
+  return object.is_discarded() ? nlohmann::json::parse(without_bare_nan(line), nullptr, false) : object;
+}
+
+/// The member of an object as text, as in a field of a CSV file. Empty if the member is null or missing.
+std::string json_field(const nlohmann::json& object, const std::string& name) {
+  const auto member = object.find(name);
+  if (member == object.end() || member->is_null()) return {};
+  if (member->is_number()) return member->dump();
+  if (member->is_boolean()) return member->get<bool>() ? "1" : "0";
+  if (member->is_string()) return member->get<std::string>();
+  throw DataError(fmt::format("{} is not a number", name));
+}
+
+nlohmann::json object_of(const std::string& line) {
+  nlohmann::json object = parse_json_line(line);
+  if (!object.is_object()) throw DataError("not a JSON object");
+  return object;
 }
 
 }  // namespace
@@ -112,20 +140,18 @@ bool LineTable::starts_with_a_row() const {
 }
 
 void LineTable::open_json(const std::string& line) {
-  const nlohmann::json object = parse_json_line(line);
-  if (!object.is_object()) throw DataError("not a JSON object");
   std::vector<std::string> members;
+  const nlohmann::json object = object_of(line);
   for (const auto& [member, value] : object.items()) members.push_back(member);
   derive_what_lacks(data_, members);
   if (data_.time.empty() && holds(members, "time")) data_.time = {"time"};
   const DerivedChannels derived(data_);
-  columns_ = data_.time;
+  std::vector<std::string> columns = data_.time;
   for (const std::vector<std::string>* channels : {&data_.state, &data_.input})
-    for (const std::string& channel : *channels) add_operands(derived, channel, columns_);
-  if (derived.where() != nullptr)
-    for (const std::string& operand : derived.where()->expression.channels()) add_operands(derived, operand, columns_);
+    add_columns(derived, *channels, columns);
+  if (derived.where() != nullptr) add_columns(derived, derived.where()->expression.channels(), columns);
   TableInfo table;
-  for (const std::string& column : columns_) table.columns.push_back(column_of(column));
+  for (const std::string& column : columns) table.columns.push_back(column_of(column));
   plan_for(table);
 }
 
@@ -137,14 +163,16 @@ void LineTable::plan_for(const TableInfo& table) {
   if (!data.where.empty()) {
     std::vector<std::string> operands;
     const DerivedChannels derived(data);
-    for (const std::string& operand : derived.where()->expression.channels()) add_operands(derived, operand, operands);
+    add_columns(derived, derived.where()->expression.channels(), operands);
     if (!std::all_of(operands.begin(), operands.end(), [&](const auto& operand) { return holds(columns_, operand); })) {
       notes_.push_back(fmt::format("data.where = {} names a column that {} lacks, so every sample is used", data.where,
                                    stream_name));
       data.where.clear();
     }
   }
-  const MemoryTables stream{{stream_name, {std::make_shared<ColumnsAlone>(table)}}};
+  std::vector<MemoryColumn> columns;  // without rows
+  for (const ColumnInfo& column : table.columns) columns.push_back({column, std::vector<std::string>()});
+  const MemoryTables stream{{stream_name, {std::make_shared<MemoryTable>(stream_name, std::move(columns))}}};
   plan_ = std::move(plan_import(data, &stream).front());
   SourcePlan& source = plan_->sources.front();
   source.request.may_miss.assign(source.request.numbers.size(), true);
@@ -152,7 +180,7 @@ void LineTable::plan_for(const TableInfo& table) {
   memory_.resize(source.derived.size());
 }
 
-Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) const {
+Table LineTable::rows_of(std::span<const std::string> lines, TimeUnit unit) const {
   const SourcePlan& source = plan_->sources.front();
   TableRequest request = columns_to_read(source.request, source.derived);
   request.time.unit = unit;
@@ -160,19 +188,16 @@ Table LineTable::rows_of(const std::vector<std::string>& lines, TimeUnit unit) c
   std::string text = head_;
   for (const std::string& line : lines) {
     text += line;
-    if (std::count(line.begin(), line.end(), '"') % 2 != 0)
-      text += '"';  // an unclosed quote ends at the end of the
-                    // line
+    if (std::count(line.begin(), line.end(), '"') % 2 != 0) text += '"';  // ends an unclosed quote
     text += '\n';
   }
   return parse_csv(stream_name, text, request, data_.format);
 }
 
-Table LineTable::json_rows(const std::vector<std::string>& lines, const TableRequest& request) const {
+Table LineTable::json_rows(std::span<const std::string> lines, const TableRequest& request) const {
   std::vector<std::vector<std::string>> texts(columns_.size());
   for (const std::string& line : lines) {
-    const nlohmann::json object = parse_json_line(line);
-    if (!object.is_object()) throw DataError("not a JSON object");
+    const nlohmann::json object = object_of(line);
     for (std::size_t i = 0; i < columns_.size(); ++i) texts[i].push_back(json_field(object, columns_[i]));
   }
   std::vector<MemoryColumn> columns;
@@ -197,7 +222,7 @@ bool LineTable::take_units(const std::string& line) {
   return true;
 }
 
-Table LineTable::read(const std::vector<std::string>& lines) {
+Table LineTable::read(std::span<const std::string> lines) {
   const bool begun = has_rows(), context = begun && format_ == Format::csv;
   std::vector<std::string> all;
   if (context) all.push_back(first_row_);
@@ -217,10 +242,13 @@ Table LineTable::read(const std::vector<std::string>& lines) {
   if (begun && !unit_known_) learn_unit(lines, table);
   std::move(table.notes.begin(), table.notes.end(), std::back_inserter(notes_));
   if (context) {
-    table.line.erase(table.line.begin());
-    for (auto& column : table.numbers) column.erase(column.begin());
-    if (!table.time_ns.empty()) table.time_ns.erase(table.time_ns.begin());
-    if (!table.time_s.empty()) table.time_s.erase(table.time_s.begin());
+    const auto drop_first = [](auto& values) {
+      if (!values.empty()) values.erase(values.begin());
+    };
+    for (auto& column : table.numbers) drop_first(column);
+    drop_first(table.line);
+    drop_first(table.time_ns);
+    drop_first(table.time_s);
   }
   rows_before_ = rows_;
   rows_ += table.rows();
@@ -238,7 +266,7 @@ void LineTable::begin(const std::string& line, const Table& table) {
 }
 
 /// Finds the unit of times from the first two rows. This unit applies to all later rows.
-void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& table) {
+void LineTable::learn_unit(std::span<const std::string> lines, const Table& table) {
   std::vector<std::string> all{first_row_};
   all.insert(all.end(), lines.begin(), lines.end());
   const std::vector<std::int64_t> found =
@@ -250,7 +278,7 @@ void LineTable::learn_unit(const std::vector<std::string>& lines, const Table& t
     break;
   }
   unit_known_ = true;
-  const double first_s = time_s(rows_of({first_row_}, data_.time_unit), 0);
+  const double first_s = time_s(rows_of({&first_row_, 1}, data_.time_unit), 0);
   if (first_s != first_s_) corrected_first_s_ = first_s;
 }
 
@@ -268,7 +296,7 @@ double LineTable::rest_s(const Table& table, std::size_t row) const {
   return static_cast<double>(table.time_ns[row] - static_cast<std::int64_t>(whole) * billion) / 1e9 - (seconds - whole);
 }
 
-/// Adds the days before this batch, because the reader counts days from the first row of a batch.
+/// Adds the days before this batch: the reader counts days from its first row.
 void LineTable::pass_midnights(Table& table) {
   for (std::int64_t& time_ns : table.time_ns)
     if (time_ns != missing_stamp) time_ns = days_.on(time_ns / billion) * billion + time_ns % billion;
@@ -278,8 +306,7 @@ void LineTable::derive(Table& table) {
   const SourcePlan& source = plan_->sources.front();
   if (source.derived.empty()) return;
   if (!origin_ns_ && !table.time_ns.empty()) origin_ns_ = table.time_ns.front();
-  std::vector<double> seconds;  // relative to the first row, because a double of nanoseconds since 1970 would lose
-                                // precision
+  std::vector<double> seconds;  // relative to the first row; a double of nanoseconds since 1970 would lose precision
   for (std::size_t row = 0; row < table.rows(); ++row)
     seconds.push_back(!has_times() || table.time_ns[row] == missing_stamp
                           ? time_s(table, row)

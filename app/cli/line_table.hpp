@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -11,9 +12,8 @@
 
 namespace modebank::app {
 
-/// Lines of a log that arrive one by one. They become the same rows as in the import of a file with these lines,
-/// because reader, times and derived channels are the same code. CSV may have a header and a row of units. NDJSON has
-/// one object per line.
+/// Lines of a log that arrive one by one: CSV, which may have a header and a row of units, or NDJSON. They become the
+/// same rows as in the import of a file with these lines, because reader, times and derived channels are the same code.
 class LineTable {
  public:
   /// `data`: channels, times and formats of the archive.
@@ -26,9 +26,8 @@ class LineTable {
   /// True if lines are JSON objects, false if they are CSV.
   bool has_objects() const { return format_ == Format::objects; }
   /// Returns one row per line, with derived channels. A line of units after the header gives no row. Throws
-  /// std::runtime_error if a line is not a row; the message has no line number. Pass one line at a time until the first
-  /// row.
-  Table read(const std::vector<std::string>& lines);
+  /// std::runtime_error without a line number if a line is not a row. Pass one line at a time until the first row.
+  Table read(std::span<const std::string> lines);
   bool has_rows() const { return !first_row_.empty(); }
   /// Positions of the columns of states, inputs and data.where in Table::numbers.
   const FilePlan& plan() const { return *plan_; }
@@ -68,10 +67,10 @@ class LineTable {
   void plan_for(const TableInfo& table);
   std::vector<std::string> fields_in(const std::string& line) const;
   bool take_units(const std::string& line);
-  Table rows_of(const std::vector<std::string>& lines, TimeUnit unit) const;
-  Table json_rows(const std::vector<std::string>& lines, const TableRequest& request) const;
+  Table rows_of(std::span<const std::string> lines, TimeUnit unit) const;
+  Table json_rows(std::span<const std::string> lines, const TableRequest& request) const;
   void begin(const std::string& line, const Table& table);
-  void learn_unit(const std::vector<std::string>& lines, const Table& table);
+  void learn_unit(std::span<const std::string> lines, const Table& table);
   void pass_midnights(Table& table);
   void derive(Table& table);
 };

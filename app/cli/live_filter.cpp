@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "filter/judge/combination.hpp"
 #include "filter/learn/chain/inputs.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "app/config/config.hpp"
 #include "filter/step/combined_filter.hpp"

@@ -7,7 +7,6 @@
 
 #include <cstdlib>
 #include <memory>
-#include <string>
 #include <string_view>
 
 #include "ident/base/printable.hpp"

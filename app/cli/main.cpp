@@ -5,10 +5,8 @@
 #include <cstdio>
 #include <exception>
 #include <filesystem>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "app/cli/command_line.hpp"
 #include "app/cli/commands.hpp"

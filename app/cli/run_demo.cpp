@@ -1,13 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <string_view>
 
 #include "app/cli/commands.hpp"
 #include "app/cli/demo_text.hpp"
 #include "app/cli/log.hpp"
-#include "app/cli/simulated_system.hpp"
 #include "app/config/config_file.hpp"
 #include "app/report/page/assets.hpp"
 #include "io/archive/archive.hpp"

@@ -1,11 +1,7 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
-#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/export/forms.hpp"
 #include "app/export/names.hpp"

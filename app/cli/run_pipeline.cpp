@@ -2,9 +2,7 @@
 #include <spdlog/spdlog.h>
 #include <tbb/global_control.h>
 
-#include <filesystem>
 #include <functional>
-#include <nlohmann/json.hpp>
 
 #include "app/chain/chain.hpp"
 #include "app/chain/pipeline.hpp"

@@ -3,17 +3,15 @@
 #include <tbb/global_control.h>
 
 #include <iterator>
-#include <nlohmann/json.hpp>
 
 #include "app/chain/stages.hpp"
 #include "app/chain/stored_banks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/live_filter.hpp"
 #include "app/cli/new_data.hpp"
-#include "app/cli/result.hpp"
 #include "app/config/config_file.hpp"
 #include "app/config/free_run_check.hpp"
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
 #include "io/archive/archive.hpp"
 #include "io/archive/bank/load_bank.hpp"
 #include "io/archive/load_averaged.hpp"

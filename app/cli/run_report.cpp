@@ -1,8 +1,5 @@
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-
 #include "app/cli/commands.hpp"
 #include "app/config/config_file.hpp"
 #include "app/report/page/run_page.hpp"

@@ -1,7 +1,5 @@
 #include <spdlog/spdlog.h>
 
-#include <exception>
-
 #include "app/chain/stored_banks.hpp"
 #include "app/cli/commands.hpp"
 #include "app/cli/new_data.hpp"
@@ -38,18 +36,16 @@ int run_track(const CommandLine& line) {
   const std::vector<Trajectory> runs =
       files ? read_runs(archive, config, opened.bank, averaged) : std::vector<Trajectory>();
   Tracker tracker(archive, config, std::move(opened), files ? Alignment{} : alignment);
-  std::exception_ptr trouble;
   try {
     files ? tracker.follow_runs(runs, runs.size() > 1) : tracker.follow_lines();
   } catch (...) {
-    trouble = std::current_exception();
+    try {
+      tracker.finish(true);
+    } catch (...) {  // the first error counts
+    }
+    throw;
   }
-  try {
-    tracker.finish(trouble != nullptr);
-  } catch (...) {
-    if (!trouble) throw;
-  }
-  if (trouble) std::rethrow_exception(trouble);
+  tracker.finish(false);
   return 0;
 }
 

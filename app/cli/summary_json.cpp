@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/cli/json_number.hpp"
 #include "app/text/mode_families.hpp"
 #include "app/text/mode_names.hpp"
 
@@ -15,9 +14,9 @@ json errors_json(const std::vector<ErrorAhead>& errors) {
   json list = json::array();
   for (const ErrorAhead& error : errors)
     list.push_back({{"steps", error.steps},
-                    {"rmse", json_numbers(error.rmse)},
-                    {"combined", json_numbers(error.combined)},
-                    {"fit_percent", json_numbers(error.fit_percent)}});
+                    {"rmse", error.rmse},
+                    {"combined", error.combined},
+                    {"fit_percent", error.fit_percent}});
   return list;
 }
 
@@ -26,7 +25,7 @@ json forecasts_json(const std::vector<NamedForecast>& forecasts) {
   for (const NamedForecast& forecast : forecasts)
     list.push_back({{"steps", forecast.steps},
                     {"filter", forecast.filter},
-                    {"rmse", json_numbers(forecast.rmse)},
+                    {"rmse", forecast.rmse},
                     {"c_filter", forecast.c_filter}});
   return list;
 }
@@ -38,18 +37,16 @@ json modes_json(const Archive& archive, const std::vector<ModeFamily>& families)
     list.push_back({{"mode", mode.mode},
                     {"name", mode_cell(archive.mode_names, mode.mode)},
                     {"family", family[static_cast<std::size_t>(mode.mode)]},
-                    {"use", json_number(mode.use)},
-                    {"stay_s", json_number(mode.stay_s)}});
+                    {"use", mode.use},
+                    {"stay_s", mode.stay_s}});
   return list;
 }
 
 json summary_families(const std::vector<ModeFamily>& families) {
   json list = json::array();
   for (const ModeFamily& family : families)
-    list.push_back({{"title", family.title()},
-                    {"modes", family.modes},
-                    {"use", json_number(family.use)},
-                    {"stay_s", json_number(family.stay_s)}});
+    list.push_back(
+        {{"title", family.title()}, {"modes", family.modes}, {"use", family.use}, {"stay_s", family.stay_s}});
   return list;
 }
 
@@ -72,15 +69,15 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
           {"filter", screen.filter},
           {"competitor", screen.competitor},
-          {"gain", json_number(screen.gain)},
-          {"gain_error", json_number(screen.gain_error)},
-          {"coverage", json_number(screen.coverage)},
-          {"coverage_lower", json_number(screen.coverage_lower)},
-          {"coverage_upper", json_number(screen.coverage_upper)},
+          {"gain", screen.gain},
+          {"gain_error", screen.gain_error},
+          {"coverage", screen.coverage},
+          {"coverage_lower", screen.coverage_lower},
+          {"coverage_upper", screen.coverage_upper},
           {"verdict", name_of(screen.verdict)},
           {"errors", errors_json(screen.errors)},
           {"free_run_start", screen.free_run_start},
-          {"fit", json_numbers(screen.fit)},
+          {"fit", screen.fit},
           {"modes", modes_json(archive, families)},
           {"families", summary_families(families)},
           {"role", name_of(screen.role)}};

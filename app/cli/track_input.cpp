@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -39,21 +38,19 @@ SampleReader::Line SampleReader::malformed(std::string reason) {
   return Line::malformed;
 }
 
-void SampleReader::read(const std::vector<std::string>& lines, const Take& take) {
-  Rows rows;
-  for (std::size_t i = 0; i < lines.size(); ++i) {
-    const bool blank = without_blanks(lines[i]).empty();
-    if (blank || (table_.has_rows() && !table_.has_objects() && is_comment(lines[i]))) {
-      read_rows(std::exchange(rows, {}), take);
+void SampleReader::read(std::span<const std::string> lines, const Take& take) {
+  std::size_t first = 0;  // of the rows that have not been read
+  for (std::size_t i = 0; i <= lines.size(); ++i) {
+    const bool blank = i < lines.size() && (without_blanks(lines[i]).empty() ||
+                                            (table_.has_rows() && !table_.has_objects() && is_comment(lines[i])));
+    if (i < lines.size() && !blank && table_.has_rows()) continue;
+    read_rows(lines.subspan(first, i - first), first, take);
+    first = i + 1;
+    if (blank)
       take(i, Line::blank);
-    } else if (table_.has_rows()) {
-      rows.lines.push_back(lines[i]);
-      rows.positions.push_back(i);
-    } else {
+    else if (i < lines.size())
       read_head(lines[i], i, take);
-    }
   }
-  read_rows(rows, take);
 }
 
 void SampleReader::read_head(std::string line, std::size_t position, const Take& take) {
@@ -66,28 +63,25 @@ void SampleReader::read_head(std::string line, std::size_t position, const Take&
     return take(position, malformed(error.what()));
   }
   if (is_row)
-    read_rows({{line}, {position}}, take);
+    read_rows({&line, 1}, position, take);
   else
     take(position, table_.is_open() ? Line::header : Line::blank);
 }
 
 /// One malformed line makes the whole batch fail. The batch is then halved until the malformed line is alone.
-void SampleReader::read_rows(const Rows& rows, const Take& take) {
-  if (rows.lines.empty()) return;
+void SampleReader::read_rows(std::span<const std::string> lines, std::size_t position, const Take& take) {
+  if (lines.empty()) return;
   Table table;
   try {
-    table = table_.read(rows.lines);
+    table = table_.read(lines);
   } catch (const std::runtime_error& error) {
-    if (rows.lines.size() == 1) return take(rows.positions.front(), malformed(error.what()));
-    const auto half = std::ssize(rows.lines) / 2;
-    read_rows(
-        {{rows.lines.begin(), rows.lines.begin() + half}, {rows.positions.begin(), rows.positions.begin() + half}},
-        take);
-    return read_rows(
-        {{rows.lines.begin() + half, rows.lines.end()}, {rows.positions.begin() + half, rows.positions.end()}}, take);
+    const std::size_t half = lines.size() / 2;
+    if (half == 0) return take(position, malformed(error.what()));
+    read_rows(lines.first(half), position, take);
+    return read_rows(lines.subspan(half), position + half, take);
   }
-  if (table.rows() == 0) return take(rows.positions.front(), Line::header);  // the line is a row of units
-  for (std::size_t row = 0; row < rows.lines.size(); ++row) take(rows.positions[row], accept(table, row));
+  if (table.rows() == 0) return take(position, Line::header);  // the line is a row of units
+  for (std::size_t row = 0; row < lines.size(); ++row) take(position + row, accept(table, row));
 }
 
 void SampleReader::leave_out(double& value, const std::string& name, const char* instead) {

@@ -2,12 +2,13 @@
 
 #include <Eigen/Core>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
+#include "app/cli/aligned_samples.hpp"
 #include "app/cli/line_table.hpp"
 #include "app/config/config.hpp"
-#include "filter/step/aligned_samples.hpp"
 
 namespace modebank::app {
 
@@ -24,7 +25,8 @@ class SampleReader {
   /// - `left_out`: data.where is false.
   ///
   /// Throws ConfigurationError with the existing columns if the header lacks a needed column.
-  void read(const std::vector<std::string>& lines, const std::function<void(std::size_t, Line)>& take);
+  using Take = std::function<void(std::size_t, Line)>;
+  void read(std::span<const std::string> lines, const Take& take);
 
   const TimedSample& sample() const { return sample_; }
   const std::string& reason() const { return reason_; }
@@ -33,7 +35,6 @@ class SampleReader {
   LineTable& table() { return table_; }
 
  private:
-  using Take = std::function<void(std::size_t, Line)>;
   DataOptions data_;
   LineTable table_;
   TimedSample sample_, next_;
@@ -41,12 +42,8 @@ class SampleReader {
   std::string reason_;
   std::vector<std::string> remarks_;
 
-  struct Rows {
-    std::vector<std::string> lines;
-    std::vector<std::size_t> positions;
-  };
   void read_head(std::string line, std::size_t position, const Take& take);
-  void read_rows(const Rows& rows, const Take& take);
+  void read_rows(std::span<const std::string> lines, std::size_t position, const Take& take);
   Line accept(const Table& table, std::size_t row);
   Line malformed(std::string reason);
   /// Marks a value that is too large for a filter as missing, with a remark.

@@ -6,17 +6,14 @@
 #include <cstddef>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
+#include "app/cli/aligned_samples.hpp"
 #include "app/cli/line_stream.hpp"
 #include "app/cli/live_filter.hpp"
 #include "app/cli/track_input.hpp"
-#include "app/cli/track_messages.hpp"
 #include "app/cli/track_output.hpp"
-#include "app/cli/validity_flags.hpp"
 #include "app/config/config.hpp"
-#include "filter/step/aligned_samples.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "ident/data/trajectory.hpp"
 
@@ -54,7 +51,7 @@ class Tracker {
   std::optional<EstimateWriter> writer_;
   std::string run_, place_;
   AlignedSamples samples_;
-  Alignment alignment_;
+  double lag_s_;
   double stepped_s_ = 0.0;        ///< time of the last estimate
   double since_s_ = HUGE_VAL;     ///< between the last two estimates
   std::optional<double> last_s_;  ///< time of the last sample
@@ -63,12 +60,12 @@ class Tracker {
   std::optional<std::size_t> first_at_;  ///< position of the first estimate in out_; empty after it was written
   std::size_t line_number_ = 0, came_ = 0, refused_ = 0, estimates_ = 0;
   fmt::memory_buffer out_;
-  std::optional<LineStream> lines_;  ///< set while standard input is read
+  std::optional<LineStream> lines_;  ///< set while standard input is read, and until the last estimates are written
   LiveMessages messages_;
 
   void restart();
   void take_lines(std::vector<std::string>& lines);
-  void take_last_line(const std::string& line);
+  void take_last_line(std::vector<std::string> line);
   void take(SampleReader::Line kind);
   void take_sample(const TimedSample& sample);
   void open_writer(const EstimateLines& lines);

@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
-#include <map>
 
 #include "app/config/faults.hpp"
 #include "app/config/ini_lines.hpp"

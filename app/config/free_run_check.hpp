@@ -1,6 +1,6 @@
 #pragma once
 
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
 #include "ident/model/linear_model.hpp"
 
 namespace modebank {

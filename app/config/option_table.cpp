@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>
-#include <cmath>
 
 #include "app/config/options/sections.hpp"
 

@@ -4,11 +4,9 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/init/mounting.hpp"
 #include "app/init/unreachable_commands.hpp"
-#include "app/init/words.hpp"
 #include "ident/base/printable.hpp"
 #include "io/import/expression.hpp"
 #include "modebank/base/error.hpp"

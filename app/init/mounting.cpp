@@ -3,7 +3,6 @@
 #include <array>
 #include <cmath>
 
-#include "app/init/words.hpp"
 #include "ident/data/streams.hpp"
 
 namespace modebank::app {

@@ -4,7 +4,6 @@
 #include <spdlog/spdlog.h>
 
 #include "app/chain/provenance.hpp"
-#include "app/config/config_file.hpp"
 #include "app/study/answers/answers_text.hpp"
 #include "app/study/answers/merge_study.hpp"
 #include "app/study/answers/study_text.hpp"

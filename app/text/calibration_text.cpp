@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "app/text/judged_runs.hpp"
-#include "filter/judge/diagnostics.hpp"
 
 namespace modebank::app {
 namespace {

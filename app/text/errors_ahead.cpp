@@ -10,7 +10,6 @@
 #include "app/text/judged_runs.hpp"
 #include "app/text/number_text.hpp"
 #include "app/text/operating_point.hpp"
-#include "filter/judge/finding.hpp"
 #include "filter/step/combined_filter.hpp"
 
 namespace modebank::app {

@@ -1,7 +1,6 @@
 #include "app/text/first_screen.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/algorithm/string.hpp>

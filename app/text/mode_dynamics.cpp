@@ -5,7 +5,6 @@
 #include <complex>
 #include <limits>
 #include <numbers>
-#include <vector>
 
 #include "ident/base/linalg.hpp"
 #include "ident/base/not_a_number.hpp"

@@ -1,12 +1,10 @@
 #include "app/text/response_text.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
-#include <vector>
 
 #include "app/text/number_text.hpp"
 #include "app/text/operating_point.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
 #include "app/text/number_text.hpp"
 #include "app/text/warnings.hpp"

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "filter/judge/horizon.hpp"
+#include "filter/judge/scores.hpp"
 #include "filter/step/combined_filter.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/data/trajectory.hpp"
@@ -12,17 +13,15 @@
 /// Combination of the forecasts of the bank and its competitors, weighted by past success within the run.
 namespace modebank {
 
-/// Forecasts of several filters for one run, combined by ForecastWeights, which restart with every run. The weights of
-/// a forecast are those at its origin, so no later information enters.
+/// Forecasts of several filters for one run, combined by the ForecastWeights at their origin, which restart every run.
 struct CombinedForecasts {
   HorizonEvaluation predictions;
   /// F x N per horizon: the filters' weights in the forecast of a sample; NaN if the sample was not scored.
   std::vector<Eigen::MatrixXd> weight;
 };
-/// Combines forecasts. `members`: at least one forecast; all have the same run and horizons. A sample is scored if the
-/// first member scores it. `start`: starting weights per horizon; if empty, weights are equal. Throws
-/// std::invalid_argument if a condition does not hold.
-CombinedForecasts combine_forecasts(const std::vector<const HorizonEvaluation*>& members,
+/// `members`: forecasts of the same run and horizons, at least one. A sample is scored if the first member scores it.
+/// `start`: starting weights per horizon; if empty, weights are equal.
+CombinedForecasts combine_forecasts(const std::vector<HorizonEvaluation>& members,
                                     const std::vector<std::vector<double>>& start = {});
 
 /// Mean weight of a filter; one row of /evaluation/combination.
@@ -34,9 +33,8 @@ struct CombinationRow {
   double start = not_a_number;  ///< weight at the start of a held-out or later run
 };
 
-/// One row of /bank/left_out: scores of a filter on the training runs. Each run is scored by a fit that was learned
-/// without it. These scores choose the filter that is named for prediction, and the starting weights of the
-/// combination.
+/// One row of /bank/left_out: scores of a filter on the training runs, each by a fit that was learned without it. They
+/// choose the filter that is named for prediction, and the starting weights of the combination.
 struct LeftOutRow {
   std::string filter;           ///< bank, a competitor or combined_name
   Eigen::Index horizon = 1;     ///< samples ahead
@@ -45,8 +43,7 @@ struct LeftOutRow {
   Eigen::VectorXd rmse;         ///< n_y [state unit]
   double start = not_a_number;  ///< starting weight in combined forecasts; NaN for combined_name
 };
-/// Rows of the filters. If there are two or more filters, also rows of their combination. `forecasts`: per filter (the
-/// bank first) the forecasts of all runs.
+/// Rows of the filters, and of two or more filters' combination. `forecasts`: per filter (the bank first) of all runs.
 std::vector<LeftOutRow> left_out_rows(const std::vector<std::string>& filters,
                                       const std::vector<std::vector<HorizonEvaluation>>& forecasts);
 /// The weights that left_out_rows found, in the form for ForecastTables. Empty if the rows lack a filter or a horizon.
@@ -58,27 +55,20 @@ std::vector<std::vector<double>> start_weights(const std::vector<LeftOutRow>& ro
 std::vector<double> start_weights(const std::vector<CombinationRow>& rows, Eigen::Index horizon,
                                   const std::vector<std::string>& filters);
 
-/// Approximate number of samples for computing stacked weights. Larger sets are thinned evenly.
-inline constexpr Eigen::Index enough_densities = 20000;
-/// ForecastWeights::stacked of the log densities of runs (filters x N each); large sets are thinned.
-std::vector<double> stacked_weights(const std::vector<Eigen::MatrixXd>& log_densities);
-
-/// Rows for the forecasts of several filters and of their combination, run by run. The object stores sums, and some
-/// densities of training runs.
+/// Rows for the forecasts of several filters and of their combination, added run by run.
 class ForecastTables {
  public:
-  /// The first filter is the bank. `start`: starting weights per horizon from earlier forecasts, see combine_forecasts.
-  /// If empty, they come from start_as_trained.
+  /// The first filter is the bank. `start`: starting weights per horizon; if empty, they come from start_as_trained.
   ForecastTables(std::vector<std::string> filters, const std::vector<Trajectory>& runs,
                  std::vector<std::vector<double>> start = {});
   /// Adds every filter's predictions of the i-th run. Different runs may be added from different threads.
   void add(std::size_t run, const std::vector<HorizonEvaluation>& of_filters);
   /// Sets the starting weights of all runs added later, unless the caller gave weights. They are the most likely
-  /// weights on the training runs so far.
+  /// weights on the training runs so far (ForecastWeights::stacked); long runs are thinned evenly.
   void start_as_trained();
   const std::vector<std::vector<double>>& start() const { return start_; }
 
-  /// Rows of all runs, filter by filter. If there are two or more filters, rows of combined_name follow.
+  /// Rows of all runs, filter by filter; those of combined_name follow if there are several filters.
   std::vector<HorizonRow> horizons() const;
   std::vector<CombinationRow> combination() const;
 
@@ -87,11 +77,10 @@ class ForecastTables {
   const std::vector<Trajectory>& runs_;
   std::vector<std::vector<std::vector<HorizonSums>>> sums_;  ///< per filter and run; the combination is the last filter
   std::vector<Eigen::MatrixXd> weights_;                     ///< per run: filters x horizons, sums over its samples
-  std::vector<std::vector<Eigen::MatrixXd>> densities_;      ///< per training run and horizon: filters x stored samples
-  Eigen::Index every_ = 1;                                   ///< one of this many samples is kept in densities_
-  std::vector<std::vector<double>> start_;                   ///< per horizon; if empty, weights are equal
-
-  bool combines() const { return filters_.size() > 1; }
+  /// Per training run, horizon and filter: log densities of kept samples that the first filter scored.
+  std::vector<std::vector<std::vector<std::vector<double>>>> densities_;
+  Eigen::Index every_ = 1;                  ///< one of this many samples is kept in densities_
+  std::vector<std::vector<double>> start_;  ///< per horizon; if empty, weights are equal
 };
 
 }  // namespace modebank

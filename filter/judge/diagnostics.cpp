@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <iterator>
+#include <tuple>
 #include <utility>
 
 #include "filter/step/gaussian.hpp"
@@ -13,23 +14,30 @@
 
 namespace modebank {
 
-namespace {
-
 using Eigen::Index;
 
-constexpr double nis_level = 0.99;  // level of the confidence interval that decides the verdict
-constexpr double outside_level = 0.99;
-/// Shares of signals outside the band. If significant, they decide a verdict.
-constexpr double true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
+namespace {
 
-/// Verdict of the mean NIS: -1 for underconfident, 1 for overconfident, 0 for neither.
-int judge_nis(const BandCounts& counts) {
-  if (!counts.chi_square_nis) return 0;
-  const double degrees = counts.nis_degrees, mean = mean_distance(counts.nis, degrees);
-  const Interval expected = mean_distance_interval(counts.nis, degrees, nis_level);
-  if (mean > expected.upper && mean > (1.0 + nis_tolerance) * degrees) return 1;
-  if (mean < expected.lower && mean < (1.0 - nis_tolerance) * degrees) return -1;
-  return 0;
+constexpr double sure_level = 0.99;  // of the confidence intervals that decide the verdict
+/// Shares of signals outside the 95 % band. If significant, they decide a verdict.
+constexpr double deciding_band = 0.95, true_outside = 0.05, many_outside = 0.06, few_outside = 0.025;
+
+/// A share of signals with its interval, for the effective number of independent samples.
+struct Share {
+  double value;
+  Interval interval;
+};
+
+/// The share outside a central band. `time`: least autocorrelation time.
+Share outside_of(double band, const SeriesByRun& z, double time, double level = 0.95) {
+  const SeriesByRun hits = outside_band(z, band);
+  const double samples = sample_count(hits) / std::max(autocorrelation_time(hits), time), share = mean_of(hits);
+  return {share, binomial_interval(share * samples, samples, level)};
+}
+
+Share inside_of(double band, const SeriesByRun& z, double time) {
+  const auto [outside, interval] = outside_of(band, z, time);
+  return {1.0 - outside, {1.0 - interval.upper, 1.0 - interval.lower}};
 }
 
 bool within(double value, double least, double largest) { return value >= least && value <= largest; }
@@ -39,103 +47,57 @@ bool says_nothing(const Interval& interval, double least, double largest) {
   return interval.lower < least && interval.upper > largest;
 }
 
-/// The number that keeps a filter from being calibrated; none if every number passes. `outside`: share of the misses.
-CalibrationReason doubt_of(const BandCounts& counts, double outside, const Interval& likely, const Interval& close) {
-  if (says_nothing(likely, least_outside, largest_outside) || says_nothing(close, least_close, largest_close))
-    return CalibrationReason::few_samples;
-  if (!within(outside, least_outside, largest_outside)) return CalibrationReason::band;
-  if (!within(share_of(counts.close), least_close, largest_close)) return CalibrationReason::close;
-  if (!within(mean_distance(counts.nis, counts.nis_degrees) / counts.nis_degrees, least_nis, most_nis))
-    return CalibrationReason::nis;
-  return within(counts.correlation, -largest_correlation, largest_correlation) ? CalibrationReason::none
-                                                                               : CalibrationReason::pattern;
-}
-
-}  // namespace
-
-SeriesByRun as_numbers(const HitsByRun& hits) {
-  SeriesByRun numbers;
-  for (const std::vector<char>& run : hits) numbers.emplace_back(run.begin(), run.end());
-  return numbers;
-}
-
-void BandCounts::begin_run(const RunEvaluation& run) {
-  const auto samples = static_cast<std::size_t>(run.log_density.size());
-  const std::size_t signals = samples * static_cast<std::size_t>(run.pit.rows());
-  for (HitsByRun& hits : outside) hits.emplace_back().reserve(signals);
-  far.emplace_back().reserve(signals);
-  close.emplace_back().reserve(signals);
-  sizes.emplace_back().reserve(signals);
-  nis.begin_run(samples);
-}
-
-void BandCounts::add(const RunEvaluation& run, const RunScores& scores, Index k) {
-  for (const double z : scores.z.col(k)) {
-    if (std::isnan(z)) continue;
-    const BandHits hits = band_hits(z);
-    for (std::size_t b = 0; b < outside.size(); ++b) outside[b].back().push_back(hits.outside[b] ? 1 : 0);
-    far.back().push_back(hits.far ? 1 : 0);
-    close.back().push_back(hits.close ? 1 : 0);
-    sizes.back().push_back(std::abs(z));
+/// The first rule of Calibration that holds, and the number in it. `time`: of the sizes. `correlation`: the largest
+/// lag-1 autocorrelation of a signal's z by absolute value.
+std::pair<Calibration, CalibrationReason> verdict_of(const ScoredSignals& of, double time, bool chi_square_nis,
+                                                     double correlation) {
+  using enum Calibration;
+  if (sample_count(of.z) == 0.0) return {undecided, CalibrationReason::few_samples};
+  const Share sure = outside_of(deciding_band, of.z, time, sure_level), close = inside_of(true_tail, of.z, time);
+  const double outside = sure.value, nis = of.nis.mean(1.0);
+  if (outside > many_outside && sure.interval.lower > true_outside) return {overconfident, CalibrationReason::band};
+  if (outside < few_outside && sure.interval.upper < true_outside) return {underconfident, CalibrationReason::band};
+  if (outside < true_outside && close.interval.lower > largest_close) return {underconfident, CalibrationReason::close};
+  if (chi_square_nis) {
+    const Interval expected = of.nis.mean_interval(1.0, sure_level);
+    if (nis > expected.upper && nis > 1.0 + nis_tolerance) return {overconfident, CalibrationReason::nis};
+    if (nis < expected.lower && nis < 1.0 - nis_tolerance) return {underconfident, CalibrationReason::nis};
   }
-  nis.add(run.nis(k), scored_signals(run, k));
+  if (says_nothing(outside_of(deciding_band, of.z, time).interval, least_outside, largest_outside) ||
+      says_nothing(close.interval, least_close, largest_close))
+    return {undecided, CalibrationReason::few_samples};
+  if (!within(outside, least_outside, largest_outside)) return {undecided, CalibrationReason::band};
+  if (!within(close.value, least_close, largest_close)) return {undecided, CalibrationReason::close};
+  if (!within(nis, least_nis, most_nis)) return {undecided, CalibrationReason::nis};
+  if (!within(correlation, -largest_correlation, largest_correlation)) return {undecided, CalibrationReason::pattern};
+  return {calibrated, CalibrationReason::none};
 }
 
-double share_of(const HitsByRun& hits) { return mean_of(as_numbers(hits)); }
-
-double time_by_sizes(const SeriesByRun& sizes) {
-  return cautious_time(autocorrelation_time_of_tail(sizes), sample_count(sizes));
-}
-
-Interval fraction_interval(const SeriesByRun& hits, double time, double level) {
-  const double samples = sample_count(hits) / std::max(autocorrelation_time(hits), time);
-  return binomial_interval(mean_of(hits) * samples, samples, level);
-}
-
-Verdict verdict_of(const BandCounts& counts, double time) {
-  const SeriesByRun misses = as_numbers(counts.outside[deciding_level]);
-  if (sample_count(misses) == 0.0) return {};
-  const double outside = mean_of(misses);
-  const Interval sure = fraction_interval(misses, time, outside_level);
-  if (outside > many_outside && sure.lower > true_outside) return {Calibration::overconfident, CalibrationReason::band};
-  const Interval close = fraction_interval(as_numbers(counts.close), time);
-  if (outside < few_outside && sure.upper < true_outside) return {Calibration::underconfident, CalibrationReason::band};
-  if (outside < true_outside && close.lower > largest_close)
-    return {Calibration::underconfident, CalibrationReason::close};
-  if (const int nis = judge_nis(counts); nis != 0)
-    return {nis > 0 ? Calibration::overconfident : Calibration::underconfident, CalibrationReason::nis};
-  const CalibrationReason doubt = doubt_of(counts, outside, fraction_interval(misses, time), close);
-  return {doubt == CalibrationReason::none ? Calibration::calibrated : Calibration::undecided, doubt};
-}
-
-namespace {
-
-/// Statistics of the samples of one row: those of the whole filter (mode -1), or those where one mode was the most
-/// probable one before the measurement.
+/// Statistics of the samples of one row: all (mode -1), or those where one mode was the most probable one before.
 struct Collected {
-  Index mode;
-  std::vector<Index> nees_states;                      ///< the states of the NEES
+  Index mode, n_y;
+  const std::vector<Index>& nees_states;               ///< the states of the NEES
   Index samples = 0, entropy_samples = 0, failed = 0;  ///< failed: samples without a density above zero
   double usage = 0.0, entropy = 0.0, visits = 0.0, visited = 0.0;
   double nees = 0.0, nees_degrees = 0.0;
-  BandCounts counts = {};
+  ScoredSignals signals = {};
   SeriesByRun z = {};  ///< only for the whole filter: one series per run and measured signal
   std::vector<double> whiteness = {};
-  Eigen::VectorXd squared_state_error = {};
+  Eigen::VectorXd squared_state_error = Eigen::VectorXd::Zero(n_y);
   Index state_errors = 0;
 
   void add(const Trajectory& run, const RunEvaluation& e, const RunScores& scores) {
-    counts.begin_run(e);
-    SeriesByRun of_run(static_cast<std::size_t>(e.pit.rows()));
+    signals.begin_run(e);
+    SeriesByRun of_run(n_y);
     for (Index k = 0; k < e.log_density.size(); ++k) {
       if (std::isnan(e.log_density(k))) continue;
       add_probabilities(e, k);
       if (mode >= 0 && scores.likeliest(k) != mode) continue;
       ++samples;
       failed += e.log_density(k) <= lowest_log_density ? 1 : 0;
-      counts.add(e, scores, k);
-      for (Index i = 0; i < e.pit.rows(); ++i)
-        if (!std::isnan(scores.z(i, k))) of_run[static_cast<std::size_t>(i)].push_back(scores.z(i, k));
+      signals.add(e, scores, k);
+      for (Index i = 0; i < n_y; ++i)
+        if (!std::isnan(scores.z(i, k))) of_run[i].push_back(scores.z(i, k));
       if (run.truth.size() > 0) add_truth(run, e, k);
     }
     whiteness.push_back(mode < 0 ? scores.whiteness_p : whiteness_p(of_run));
@@ -143,15 +105,16 @@ struct Collected {
     add_visits(e);
   }
 
-  /// Finds the largest lag-1 autocorrelation. The samples of one mode only are no neighbours, so they have none.
-  void correlate() {
-    const auto signals = static_cast<std::size_t>(squared_state_error.size());
-    for (std::size_t i = 0; i < signals; ++i) {
+  /// The largest lag-1 autocorrelation of a signal. The samples of one mode only are no neighbours, so they have none.
+  double correlation() const {
+    double largest = 0.0;
+    for (Index i = 0; i < n_y; ++i) {
       SeriesByRun of_signal;
-      for (std::size_t run = i; run < z.size(); run += signals) of_signal.push_back(z[run]);
+      for (Index run = i; run < std::ssize(z); run += n_y) of_signal.push_back(z[run]);
       const double value = largest_autocorrelation(of_signal, 1).value;
-      if (std::abs(value) > std::abs(counts.correlation)) counts.correlation = value;
+      if (std::abs(value) > std::abs(largest)) largest = value;
     }
+    return largest;
   }
 
  private:
@@ -179,17 +142,14 @@ struct Collected {
     ++state_errors;
   }
 
-  static int mode_at(const RunEvaluation& e, Index k) {
-    if (e.viterbi_mode.size() > 0) return e.viterbi_mode(k);
-    int likeliest = 0;
-    e.mode_probability.col(k).maxCoeff(&likeliest);
-    return std::isnan(e.state(0, k)) ? -1 : likeliest;
-  }
-
   void add_visits(const RunEvaluation& e) {
     int before = -1;
     for (Index k = 0; k < e.log_density.size(); ++k) {
-      const int now = mode_at(e, k);
+      int now = -1;
+      if (e.viterbi_mode.size() > 0)
+        now = e.viterbi_mode(k);
+      else if (!std::isnan(e.state(0, k)))
+        e.mode_probability.col(k).maxCoeff(&now);
       if (now >= 0 && (mode < 0 || now == mode)) {
         visited += 1.0;
         visits += now != before ? 1.0 : 0.0;
@@ -201,67 +161,61 @@ struct Collected {
 
 constexpr double negligible_R = 1e-6;  // limit of R as a share of the innovations' variance
 
-/// Sets a share of hits and its confidence interval.
-void set_share(const HitsByRun& hits, double time, double& share, double& lower, double& upper) {
-  const SeriesByRun numbers = as_numbers(hits);
-  const Interval interval = fraction_interval(numbers, time);
-  share = mean_of(numbers);
-  lower = interval.lower;
-  upper = interval.upper;
-}
-
-/// Sets the share inside a band.
-void set_coverage(const HitsByRun& outside, double time, double& coverage, double& lower, double& upper) {
-  set_share(outside, time, coverage, upper, lower);
-  for (double* share : {&coverage, &lower, &upper}) *share = 1.0 - *share;
-}
-
-/// The states whose measurement noise is not negligible. Only for these states does the covariance after the
-/// measurement differ from R.
-std::vector<Index> states_with_noise(const Bank& bank, Role role, const std::vector<Trajectory>& runs,
+/// The states with measurement noise: only theirs is the covariance after the measurement not R.
+std::vector<Index> states_with_noise(const Bank& bank, const std::vector<std::size_t>& runs,
                                      const std::vector<RunEvaluation>& evaluations) {
   const Index n_y = bank.C.rows();
   Eigen::ArrayXd variance = Eigen::ArrayXd::Zero(n_y);
   double samples = 0.0;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].role != role) continue;
-    const RunEvaluation& e = evaluations.at(i);
-    for (Index k = 0; k < e.log_density.size(); ++k) {
-      if (std::isnan(e.log_density(k))) continue;
-      variance += e.innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
+  for (const std::size_t i : runs)
+    for (Index k = 0; k < evaluations.at(i).log_density.size(); ++k) {
+      if (std::isnan(evaluations[i].log_density(k))) continue;
+      variance += evaluations[i].innovation_covariance.col(k).reshaped(n_y, n_y).diagonal().array();
       samples += 1.0;
     }
-  }
   std::vector<Index> states;
   for (Index i = 0; i < n_y; ++i)
     if (samples > 0.0 && bank.R(i, i) * samples >= negligible_R * variance(i)) states.push_back(i);
   return states;
 }
 
-DiagnosticsRow make_row(const Collected& c) {
+void set(const Share& share, double& value, double& lower, double& upper) {
+  value = share.value;
+  lower = share.interval.lower;
+  upper = share.interval.upper;
+}
+
+/// The numbers of a row, and its verdict.
+DiagnosticsRow make_row(const Collected& c, bool chi_square_nis) {
   DiagnosticsRow row;
   const double all = c.entropy_samples > 0 ? static_cast<double>(c.entropy_samples) : not_a_number;
+  row.mode = c.mode;
   row.samples = c.samples;
   row.usage = c.usage / all;
   row.entropy = c.entropy / all;
   row.dwell = c.visits > 0.0 ? c.visited / c.visits : not_a_number;
   row.dwell_model = not_a_number;
-  const double time = time_by_sizes(c.counts.sizes);
-  const auto& outside = c.counts.outside;
-  set_coverage(outside[0], time, row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
-  set_coverage(outside[1], time, row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
-  set_coverage(outside[2], time, row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
-  set_coverage(outside[3], time, row.coverage_99, row.coverage_99_lower, row.coverage_99_upper);
-  set_share(c.counts.far, time, row.too_far, row.too_far_lower, row.too_far_upper);
-  set_share(c.counts.close, time, row.too_close, row.too_close_lower, row.too_close_upper);
-  row.nis_mean = mean_distance(c.counts.nis, c.counts.nis_degrees);
+  SeriesByRun sizes = c.signals.z;
+  for (std::vector<double>& run : sizes)
+    for (double& size : run) size = std::abs(size);
+  const double time = cautious_time(autocorrelation_time_of_tail(sizes), sample_count(sizes));
+  const SeriesByRun& z = c.signals.z;
+  set(inside_of(0.50, z, time), row.coverage_50, row.coverage_50_lower, row.coverage_50_upper);
+  set(inside_of(0.90, z, time), row.coverage_90, row.coverage_90_lower, row.coverage_90_upper);
+  set(inside_of(0.95, z, time), row.coverage_95, row.coverage_95_lower, row.coverage_95_upper);
+  set(inside_of(0.99, z, time), row.coverage_99, row.coverage_99_lower, row.coverage_99_upper);
+  set(outside_of(1.0 - true_tail, z, time), row.too_far, row.too_far_lower, row.too_far_upper);
+  set(inside_of(true_tail, z, time), row.too_close, row.too_close_lower, row.too_close_upper);
+  row.nis_mean = c.signals.nis.mean(static_cast<double>(c.n_y));
   row.nees_mean = static_cast<double>(c.nees_states.size()) * (c.nees / c.nees_degrees);
   row.state_rmse =
       (c.squared_state_error / (c.state_errors > 0 ? static_cast<double>(c.state_errors) : not_a_number)).cwiseSqrt();
   row.whiteness_p = fisher_p(c.whiteness);
-  const Verdict verdict = verdict_of(c.counts, time);
-  row.verdict = verdict.calibration;
-  row.reason = verdict.reason;
+  std::tie(row.verdict, row.reason) = verdict_of(c.signals, time, chi_square_nis, c.correlation());
+  if (c.mode >= 0) return row;
+  const Autocorrelation colour = largest_autocorrelation(c.z);
+  row.autocorrelation = colour.value;
+  row.autocorrelation_lag = colour.lag;
   return row;
 }
 
@@ -271,42 +225,34 @@ constexpr double takes_all = 0.99;         // limit of a mode's usage; a mode ab
 constexpr double unused = 1e-3;            // usage
 constexpr double flat_entropy = 0.95;      // as a share of log K
 
-void add_flag(std::string& flags, const std::string& flag) { flags += (flags.empty() ? "" : "; ") + flag; }
-
-/// "mode 3 unused", "modes 1, 3 unused"; empty if all modes are used.
-std::string unused_modes(const std::vector<DiagnosticsRow>& modes) {
-  std::string list;
-  int count = 0;
-  for (const DiagnosticsRow& mode : modes)
-    if (mode.usage < unused) list += (count++ > 0 ? ", " : " ") + std::to_string(mode.mode);
-  return count == 0 ? "" : (count > 1 ? "modes" : "mode") + list + " unused";
-}
-
 std::string two_digits(double value) {
   std::array<char, 16> text{};
   const auto end = std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::fixed, 2).ptr;
   return {text.data(), end};
 }
 
-/// Flags of a filter's row, separated by "; ". `modes`: rows of the same filter's modes. `nees_states`: number of
-/// states of the NEES. `failed`: samples at which the filter failed.
-std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Eigen::Index nees_states,
-                     Eigen::Index failed) {
-  std::string flags;
-  if (failed > 0) add_flag(flags, "the filter failed at " + std::to_string(failed) + " samples");
-  for (const DiagnosticsRow& mode : modes)
-    if (mode.usage > takes_all) add_flag(flags, "one mode takes all (" + std::to_string(mode.mode) + ")");
-  if (const std::string list = unused_modes(modes); !list.empty()) add_flag(flags, list);
-  if (!modes.empty() && all.entropy > flat_entropy) add_flag(flags, "probabilities flat");
-  if (all.too_far_lower > largest_close && all.too_close_lower > largest_close) add_flag(flags, "heavy tails");
-  if (errors_follow_a_pattern(all))
-    add_flag(flags, "innovations not white: autocorrelation " + two_digits(all.autocorrelation) + " at lag " +
-                        std::to_string(all.autocorrelation_lag));
-  if (all.reason == CalibrationReason::few_samples) add_flag(flags, "too few samples for a verdict");
-  if (nees_states < all.state_rmse.size() && all.state_rmse.allFinite())
-    add_flag(flags, nees_states == 0 ? "R is nearly zero, so the state equals the measurement: no NEES"
-                                     : "R of some states is nearly zero, so these states equal the measurement: "
-                                       "NEES only of the other states");
+/// `modes`: rows of the filter's modes. `nees_states`: number of states of the NEES. `failed`: samples without density.
+std::string flags_of(const DiagnosticsRow& all, const std::vector<DiagnosticsRow>& modes, Index nees_states,
+                     Index failed) {
+  std::string flags, list;
+  const auto add_if = [&](bool holds, const std::string& flag) {
+    if (holds) flags += (flags.empty() ? "" : "; ") + flag;
+  };
+  add_if(failed > 0, "the filter failed at " + std::to_string(failed) + " samples");
+  for (const DiagnosticsRow& mode : modes) {
+    add_if(mode.usage > takes_all, "one mode takes all (" + std::to_string(mode.mode) + ")");
+    if (mode.usage < unused) list += (list.empty() ? " " : ", ") + std::to_string(mode.mode);
+  }
+  add_if(!list.empty(), (list.find(',') == std::string::npos ? "mode" : "modes") + list + " unused");
+  add_if(!modes.empty() && all.entropy > flat_entropy, "probabilities flat");
+  add_if(all.too_far_lower > largest_close && all.too_close_lower > largest_close, "heavy tails");
+  add_if(errors_follow_a_pattern(all), "innovations not white: autocorrelation " + two_digits(all.autocorrelation) +
+                                           " at lag " + std::to_string(all.autocorrelation_lag));
+  add_if(all.reason == CalibrationReason::few_samples, "too few samples for a verdict");
+  add_if(nees_states < all.state_rmse.size() && all.state_rmse.allFinite(),
+         nees_states == 0 ? "R is nearly zero, so the state equals the measurement: no NEES"
+                          : "R of some states is nearly zero, so these states equal the measurement: NEES only of the "
+                            "other states");
   return flags;
 }
 
@@ -320,33 +266,22 @@ bool errors_follow_a_pattern(const DiagnosticsRow& row) {
 std::vector<DiagnosticsRow> diagnose(const std::string& filter, Role role, const Bank& bank, bool chi_square_nis,
                                      const std::vector<Trajectory>& runs, const std::vector<RunEvaluation>& evaluations,
                                      const std::vector<RunScores>& scores) {
-  if (std::none_of(runs.begin(), runs.end(), [role](const Trajectory& run) { return run.role == role; })) return {};
-  const std::vector<Index> nees_states = states_with_noise(bank, role, runs, evaluations);
+  const std::vector<RunGroup> groups = run_groups(runs, role);
+  if (groups.empty()) return {};
+  const std::vector<std::size_t>& judged = groups.back().runs;
+  const std::vector<Index> nees_states = states_with_noise(bank, judged, evaluations);
+  std::vector<DiagnosticsRow> rows;
   Index failed = 0;
-  const auto row_of = [&](Index mode) {
-    Collected collected{mode, nees_states};
-    collected.squared_state_error.setZero(bank.C.rows());
-    collected.counts.nis_degrees = static_cast<double>(bank.C.rows());
-    collected.counts.chi_square_nis = chi_square_nis;
-    for (std::size_t i = 0; i < runs.size(); ++i)
-      if (runs[i].role == role) collected.add(runs[i], evaluations.at(i), scores.at(i));
-    collected.correlate();
-    DiagnosticsRow row = make_row(collected);
+  for (Index mode = -1; mode < (bank.mode_count() > 1 ? bank.mode_count() : 0); ++mode) {
+    Collected collected{mode, bank.C.rows(), nees_states};
+    for (const std::size_t i : judged) collected.add(runs[i], evaluations.at(i), scores.at(i));
+    if (mode < 0) failed = collected.failed;
+    DiagnosticsRow& row = rows.emplace_back(make_row(collected, chi_square_nis));
     row.filter = filter;
     row.role = role;
-    row.mode = mode;
-    if (mode < 0) {
-      failed = collected.failed;
-      const Autocorrelation colour = largest_autocorrelation(collected.z);
-      row.autocorrelation = colour.value;
-      row.autocorrelation_lag = colour.lag;
-    }
     if (mode >= 0 && bank.transition_logit.empty())
       row.dwell_model = 1.0 / (1.0 - bank.transition.matrix()(mode, mode));
-    return row;
-  };
-  std::vector<DiagnosticsRow> rows{row_of(-1)};
-  for (Index mode = 0; bank.mode_count() > 1 && mode < bank.mode_count(); ++mode) rows.push_back(row_of(mode));
+  }
   rows.front().flags = flags_of(rows.front(), {rows.begin() + 1, rows.end()}, std::ssize(nees_states), failed);
   return rows;
 }

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "filter/step/bank_filter.hpp"
-#include "filter/step/imm_filter.hpp"
+#include "filter/step/imm.hpp"
 #include "filter/step/samples.hpp"
 #include "ident/data/public_recording.hpp"
 #include "modebank/base/eigen.hpp"
@@ -37,6 +37,37 @@ RunEvaluation evaluate_samples(const Bank& bank, Filter&& filter, const Trajecto
   return e;
 }
 
+/// The mode of every instant. `score`: log probability of the best sequence that ends in each mode.
+template <int N, int NY>
+Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
+                              const FilterOptions& options) {
+  ImmFilter<N, NY> filter(bank, options);
+  const Index K = bank.mode_count();
+  if (K == 1) return Eigen::VectorXi::Zero(instants.count());
+  Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
+  Eigen::VectorXi best(instants.count());
+  Eigen::MatrixXd log_T = bank.transition.matrix().array().log();
+  Eigen::VectorXd score(K), next(K);
+  for (Index t = 0; t < instants.count(); ++t) {
+    const bool starts = instants.instants[t].starts;
+    if (!starts && !bank.transition_logit.empty()) log_T = filter.transition(instants.inputs.col(t)).array().log();
+    const bool measured = !std::isnan(follow(instants, t, run, filter));
+    for (Index j = 0; j < K && !starts; ++j) {
+      Index before = j;
+      next(j) = (score + log_T.col(j)).maxCoeff(&before);
+      from(j, t) = static_cast<int>(before);
+      if (measured) next(j) += filter.log_likelihood()(j);
+    }
+    if (starts) next = bank.initial_probability.array().max(mode_probability_floor).log();
+    score = next.array() - next.maxCoeff();
+    score.maxCoeff(&best(t));
+  }
+  Eigen::VectorXi mode(instants.count());
+  for (Index t = instants.count() - 1; t >= 0; --t)
+    mode(t) = instants.continues(t) ? from(mode(t + 1), t + 1) : best(t);
+  return mode;
+}
+
 }  // namespace
 
 RunEvaluation evaluate_run(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
@@ -62,43 +93,6 @@ double log_likelihood(const Bank& bank, const Trajectory& run, const FilterOptio
   return sum;
 }
 
-namespace {
-
-/// The mode of every moment. The forward pass keeps the log probability `score` of the best sequence that ends in each
-/// mode, and the mode before.
-template <int N, int NY>
-Eigen::VectorXi best_sequence(const Bank& bank, const Trajectory& run, const RunInstants& instants,
-                              const FilterOptions& options) {
-  ImmFilter<N, NY> filter(bank, options);
-  const FilterModel<N, NY>& model = filter.model();
-  if (model.mode_count() == 1) return Eigen::VectorXi::Zero(instants.count());
-  const Index K = model.mode_count();
-  Eigen::MatrixXi from = Eigen::MatrixXi::Zero(K, instants.count());
-  Eigen::VectorXi best(instants.count());
-  Eigen::MatrixXd log_T = model.transition.matrix().array().log();
-  Eigen::VectorXd score(K), next(K);
-  for (Index t = 0; t < instants.count(); ++t) {
-    const bool starts = instants.instants[static_cast<std::size_t>(t)].starts;
-    if (!starts && !model.transition_logit.empty()) log_T = filter.transition(instants.inputs.col(t)).array().log();
-    const bool measured = !std::isnan(follow(instants, t, run, filter));
-    for (Index j = 0; j < K && !starts; ++j) {
-      Index before = j;
-      next(j) = (score + log_T.col(j)).maxCoeff(&before);
-      from(j, t) = static_cast<int>(before);
-      if (measured) next(j) += filter.log_likelihood()(j);
-    }
-    if (starts) next = model.initial_probability.array().max(mode_probability_floor).log();
-    score = next.array() - next.maxCoeff();
-    score.maxCoeff(&best(t));
-  }
-  Eigen::VectorXi mode(instants.count());
-  for (Index t = instants.count() - 1; t >= 0; --t)
-    mode(t) = instants.continues(t) ? from(mode(t + 1), t + 1) : best(t);
-  return mode;
-}
-
-}  // namespace
-
 Eigen::VectorXi mode_sequence(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   const RunInstants instants(bank, run);
@@ -110,8 +104,7 @@ Eigen::VectorXi mode_sequence(const Bank& bank, const Trajectory& run, const Fil
   });
   Eigen::VectorXi sequence = Eigen::VectorXi::Constant(run.samples(), -1);
   for (Index t = 0; t < instants.count(); ++t)
-    if (const Index sample = instants.instants[static_cast<std::size_t>(t)].sample; sample >= 0)
-      sequence(sample) = modes(t);
+    if (const Index sample = instants.instants[t].sample; sample >= 0) sequence(sample) = modes(t);
   return sequence;
 }
 

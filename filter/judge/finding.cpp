@@ -2,29 +2,100 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <iterator>
 
+#include "filter/judge/statistics.hpp"
 #include "filter/step/combined_filter.hpp"
+#include "ident/base/clustered_error.hpp"
+#include "ident/base/distributions.hpp"
 
 namespace modebank {
 
-namespace {
-
 using Eigen::Index;
 
+namespace {
+
+/// Differences at the samples that both filters have scored, run by run. Runs without such samples are skipped.
+SeriesByRun differences(const std::vector<Eigen::VectorXd>& better, const std::vector<Eigen::VectorXd>& other) {
+  SeriesByRun result;
+  for (std::size_t r = 0; r < better.size(); ++r) {
+    std::vector<double> run;
+    for (const double d : better[r] - other.at(r))
+      if (!std::isnan(d)) run.push_back(d);
+    if (!run.empty()) result.push_back(std::move(run));
+  }
+  return result;
+}
+
+double stretch_sum(const std::vector<double>& values, std::size_t first, std::size_t count) {
+  return Eigen::Map<const Eigen::VectorXd>(values.data() + first, static_cast<Index>(count)).sum();
+}
+
+/// Sums over adjacent stretches of `length` samples, and their lengths; 0 means whole runs.
+struct Clusters {
+  Eigen::VectorXd sums, samples;
+
+  Clusters(const SeriesByRun& d, std::size_t length) {
+    std::vector<double> sum, count;
+    for (const std::vector<double>& run : d) {
+      const std::size_t of_each = length > 0 ? length : run.size();
+      for (std::size_t first = 0; first + of_each <= run.size(); first += of_each) {
+        sum.push_back(stretch_sum(run, first, of_each));
+        count.push_back(static_cast<double>(of_each));
+      }
+    }
+    sums = Eigen::VectorXd::Map(sum.data(), std::ssize(sum));
+    samples = Eigen::VectorXd::Map(count.data(), std::ssize(count));
+  }
+};
+
+/// Standard error of the mean of d by moving blocks. `side_by_side`: number of blocks that fit without overlap.
+double error_by_blocks(const SeriesByRun& d, double mean, std::size_t length, double side_by_side) {
+  const auto b = static_cast<double>(length);
+  double squares = 0.0, count = 0.0;
+  for (const auto& run : d)
+    for (std::size_t first = 0; first + length <= run.size(); ++first) {
+      const double excess = stretch_sum(run, first, length) - mean * b;
+      squares += excess * excess;
+      ++count;
+    }
+  return std::sqrt(side_by_side / (side_by_side - 1.0) * squares / count / (b * sample_count(d)));
+}
+
+/// One-sided p value of Wilcoxon's signed-rank test (1945, Biometrics Bulletin 1(6)): exact up to 50 differences, with
+/// shared ranks for equal sizes, then the normal approximation. Zeros are ignored; 1 if all are.
+double signed_rank_p(const Eigen::VectorXd& differences) {
+  constexpr std::size_t most_exact = 50;
+  std::vector<double> sorted;
+  std::copy_if(differences.begin(), differences.end(), std::back_inserter(sorted), [](double d) { return d != 0.0; });
+  if (sorted.empty()) return 1.0;
+  std::sort(sorted.begin(), sorted.end(), [](double a, double b) { return std::abs(a) < std::abs(b); });
+  // Ranks are doubled: so they are whole numbers even if equal sizes share ranks.
+  std::vector<Index> ranks;
+  Index sum = 0;
+  for (std::size_t first = 0, next = 0; first < sorted.size(); first = next) {
+    while (next < sorted.size() && std::abs(sorted[next]) == std::abs(sorted[first])) ++next;
+    ranks.resize(next, static_cast<Index>(first + 1 + next));
+    for (std::size_t i = first; i < next; ++i) sum += sorted[i] > 0.0 ? ranks[i] : 0;
+  }
+  const auto all = Eigen::Map<const Eigen::ArrayX<Index>>(ranks.data(), std::ssize(ranks));
+  if (sorted.size() > most_exact) {
+    const double deviation = std::sqrt(0.5 * all.cast<double>().square().sum());
+    return 0.5 * std::erfc((static_cast<double>(sum) - 0.5 * static_cast<double>(all.sum())) / deviation);
+  }
+  Eigen::VectorXd ways = Eigen::VectorXd::Unit(all.sum() + 1, 0);  // share of the choices of ranks with each sum
+  for (const Index rank : ranks)
+    for (Index s = ways.size(); s-- > 0;) ways(s) = 0.5 * (ways(s) + (s >= rank ? ways(s - rank) : 0.0));
+  return ways.tail(ways.size() - sum).sum();
+}
+
 constexpr Index free_run_horizon = 0;
-constexpr double noticeable_rmse = 1e-3;  // smallest relative difference of two RMSE that counts; it is visible in a
-                                          // table with three digits
-constexpr double rounding_rmse = 1e-8;    // limit of an RMSE that is only rounding, as a share of a state's standard
-                                          // deviation; half of a double's digits
+constexpr double noticeable_rmse = 1e-3;  // smallest relative difference of two RMSE that counts
+constexpr double rounding_rmse = 1e-8;    // limit of an RMSE of rounding, as a share of a state's standard deviation
 
 // samples; 60 systems with modes had stays of at least 8.4 samples, systems without modes 1.6 samples
 constexpr double fewest_stay = 5.0;
-
-Index scored_runs(const Densities& densities) {
-  return std::count_if(densities.of_runs.begin(), densities.of_runs.end(),
-                       [](const Eigen::VectorXd& run) { return (!run.array().isNaN()).any(); });
-}
 
 /// The first of `all` that has this name; null if there is none.
 template <class Named>
@@ -37,7 +108,7 @@ const PairedGain* gain_over(const Finding& finding, const std::string& competito
   return named(finding.gains, &PairedGain::competitor, competitor);
 }
 
-/// Finds the competitor with the highest score. The bank gains least over this competitor.
+/// The competitor with the highest score is that over which the bank gains least.
 void set_best_competitor(Finding& finding) {
   finding.gain = finding.standard_error = not_a_number;
   for (const PairedGain& gain : finding.gains) {
@@ -59,51 +130,35 @@ void set_better_description(const std::vector<Densities>& competitors, Finding& 
   const Densities* leader = named(competitors, &Densities::filter, finding.best_competitor);
   for (const char* name : competitor_names) {
     const Densities* candidate = named(competitors, &Densities::filter, name);
-    if (finding.best_competitor == name) break;  // the remaining competitors are less simple
-    if (!leader || !candidate) continue;
-    const PairedGain loss = paired_gain(name, leader->of_runs, candidate->of_runs);
-    if (!is_as_good(*gain_over(finding, name)) || !is_as_good(loss)) continue;
-    finding.better_description = name;
-    return;
+    if (leader && candidate && is_as_good(*gain_over(finding, name)) &&
+        is_as_good(paired_gain(name, leader->of_runs, candidate->of_runs)))
+      finding.better_description = name;
+    // the remaining competitors are less simple
+    if (!finding.better_description.empty() || finding.best_competitor == name) return;
   }
-  const PairedGain* over = gain_over(finding, finding.best_competitor);
-  if (over && is_as_good(*over)) finding.better_description = finding.best_competitor;
 }
-
-/// Whether a gain is significant and not negligible.
-bool is_beaten(const PairedGain& over) { return over.told() && over.gain >= negligible_gain; }
-
-/// Whether the bank is significantly better than the best competitor.
-bool beats_the_best(const Finding& finding) {
-  const PairedGain* gain = gain_over(finding, finding.best_competitor);
-  return gain && is_beaten(*gain);
-}
-
-bool repeats(const Resolution& state) { return state.repeated > repeated_share; }
 
 /// The answer by scores, if lags and time steps allow an answer.
 Answer answer_by_scores(const Finding& finding) {
   if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
   if (!finding.repeating.empty()) return Answer::not_comparable;
   if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
-  const auto any = [&](auto holds) { return std::any_of(finding.gains.begin(), finding.gains.end(), holds); };
-  if (any([](const PairedGain& gain) { return gain.gain + gain.margin < negligible_gain; })) return Answer::no_evidence;
-  if (any([](const PairedGain& gain) { return !std::isfinite(gain.margin); })) return Answer::cannot_tell;
-  if (any([](const PairedGain& gain) { return !is_beaten(gain); })) return Answer::cannot_tell;
-  return finding.stay < finding.stay_asked ? Answer::cannot_tell : Answer::evidence;
+  for (const PairedGain& gain : finding.gains)
+    if (gain.gain + gain.margin < negligible_gain) return Answer::no_evidence;
+  const PairedGain* least = least_beaten(finding);
+  return least && least->counts() && !(finding.stay < finding.stay_asked) ? Answer::evidence : Answer::cannot_tell;
 }
 
 /// The answer. While lags are missing, gains over competitors do not prove modes.
 Answer answer_of(const Finding& finding) {
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
   const Answer answer = answer_by_scores(finding);
-  const bool by_gains = answer == Answer::evidence || answer == Answer::no_evidence ||
-                        (answer == Answer::cannot_tell && finding.held_out());
+  const bool by_gains = finding.held_out() && answer != Answer::one_mode && answer != Answer::not_comparable;
   return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
 }
 
-/// Mean stay of the bank in a mode: 1 / (rate of leaving the mode). If transition probabilities depend on the state,
-/// this rate is not constant. The stay then comes from the most probable sequence of modes.
+/// Mean stay of the bank in a mode: 1 / (rate of leaving it); from the most probable sequence of modes if that rate
+/// depends on the state.
 double stay_of(const FindingInputs& in) {
   const bool by_sequence = !in.bank.transition_logit.empty();
   double used = 0.0, left = 0.0;
@@ -127,18 +182,13 @@ Description description_of(const Finding& finding) {
 
 /// Whether the errors of one linear model are only the rounding of the data.
 bool leaves_rounding(const FindingInputs& in) {
-  for (const SummaryRow& row : in.summary) {
-    if (row.filter != "baseline" || row.run != "*" || row.role != in.role) continue;
-    bool all = row.rmse.size() == std::ssize(in.states) && row.rmse.size() > 0;
-    for (Index i = 0; all && i < row.rmse.size(); ++i)
-      all = row.rmse(i) < rounding_rmse * in.states[static_cast<std::size_t>(i)].sd;
-    return all;
-  }
-  return false;
+  const SummaryRow* row = pooled_row(in.summary, "baseline", in.role);
+  return row && row->rmse.size() > 0 &&
+         std::equal(row->rmse.begin(), row->rmse.end(), in.states.begin(), in.states.end(),
+                    [](double rmse, const Resolution& state) { return rmse < rounding_rmse * state.sd; });
 }
 
-/// The competitor with the smallest RMSE at each horizon and state, if this RMSE is below that of the bank. Free runs
-/// come last, because they look furthest ahead.
+/// The competitor with the smallest RMSE at each horizon and state, if it is below that of the bank. Free runs last.
 std::vector<BetterMean> better_means(const FindingInputs& in) {
   struct Errors {
     std::string filter;
@@ -163,13 +213,35 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
         least.competitor = other.filter;
         least.rmse = other.rmse(i);
       }
-      if (in.states.size() > 1) least.state = in.states[static_cast<std::size_t>(i)].state;
+      if (in.states.size() > 1) least.state = in.states[i].state;
       if (!least.competitor.empty()) result.push_back(least);
     }
   return result;
 }
 
 }  // namespace
+
+PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
+                       const std::vector<Eigen::VectorXd>& other) {
+  constexpr std::size_t fewest_runs = 5;
+  constexpr double fewest_blocks = 8.0, times_per_block = 2.0, upper_probability = 0.975;
+  const SeriesByRun d = differences(better, other);
+  PairedGain result{competitor, static_cast<Index>(sample_count(d)), mean_of(d)};
+  result.by_blocks = d.size() < fewest_runs;
+  result.standard_error = result.margin = not_a_number;
+  if (!std::isfinite(result.gain)) return result;
+  const double block = times_per_block * cautious_time(autocorrelation_time(d), sample_count(d));
+  const std::size_t length = result.by_blocks ? static_cast<std::size_t>(std::ceil(block)) : 0;
+  const Clusters clusters(d, length);
+  const auto count = static_cast<double>(clusters.sums.size());
+  result.rank_p = signed_rank_p(clusters.sums.cwiseQuotient(clusters.samples));
+  if (result.by_blocks && count < fewest_blocks) return result;
+  result.standard_error = result.by_blocks ? error_by_blocks(d, result.gain, length, count)
+                                           : clustered_error(clusters.sums, clusters.samples);
+  result.degrees_of_freedom = count - 1.0;
+  result.margin = student_quantile(upper_probability, result.degrees_of_freedom) * result.standard_error;
+  return result;
+}
 
 const char* description_of(const std::string& competitor) {
   if (competitor == "baseline") return "one linear model with constant noise";
@@ -205,21 +277,24 @@ const PairedGain* least_beaten(const Finding& finding) {
 Finding judge_modes(const FindingInputs& in) {
   Finding finding;
   finding.role = in.role;
-  finding.runs = scored_runs(in.bank_densities);
+  finding.runs = std::count_if(in.bank_densities.of_runs.begin(), in.bank_densities.of_runs.end(),
+                               [](const Eigen::VectorXd& run) { return (!run.array().isNaN()).any(); });
   finding.modes = in.bank.mode_count();
   finding.step_scatter = in.step_scatter;
   finding.pattern = in.pattern;
   finding.stay = stay_of(in);
   finding.stay_asked = std::max(fewest_stay, static_cast<double>(in.bank.structure.first_transition() + 1));
   finding.without_noise = leaves_rounding(in);
-  std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.repeating), repeats);
+  std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.repeating),
+               [](const Resolution& state) { return state.repeated > repeated_share; });
   for (const Densities& competitor : in.competitors)
     finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
   set_best_competitor(finding);
   finding.answer = answer_of(finding);
   const bool densities_tell =
       finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
-  if (densities_tell && !beats_the_best(finding)) set_better_description(in.competitors, finding);
+  const PairedGain* over_best = gain_over(finding, finding.best_competitor);
+  if (densities_tell && !(over_best && over_best->counts())) set_better_description(in.competitors, finding);
   finding.description = description_of(finding);
   if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;

@@ -7,9 +7,6 @@
 #include <vector>
 
 #include "filter/judge/diagnostics.hpp"
-#include "filter/judge/free_run.hpp"
-#include "filter/judge/horizon.hpp"
-#include "filter/judge/paired_gain.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/base/not_a_number.hpp"
@@ -20,8 +17,40 @@
 /// Decides whether held-out runs require modes of motion (method: section 6). All output uses this result.
 namespace modebank {
 
-/// not_yet: a simpler fact must be settled first (Finding::step_scatter, Finding::pattern). not_comparable: log
-/// densities cannot be compared, because measurements are repeated too often.
+/// Loss below which a description counts as equally good [nats per sample], as in the choice of modes (rule.hpp).
+inline constexpr double negligible_gain = 0.02;
+
+/// Gain of one filter over another on the same samples.
+struct PairedGain {
+  std::string competitor;
+  Eigen::Index samples = 0;     ///< number of samples that both filters scored
+  double gain = 0.0;            ///< mean difference of log density [nats/sample]; NaN without samples
+  double standard_error = 0.0;  ///< standard error of the gain; NaN if unknown
+  double degrees_of_freedom = 0.0;
+  double margin = 0.0;     ///< smallest significant gain, t(0.975, degrees of freedom) standard errors; NaN if unknown
+  bool by_blocks = false;  ///< whether clusters are blocks of samples instead of runs
+  double rank_p = 1.0;     ///< Wilcoxon's signed ranks of the mean differences per run, or per block of samples
+
+  /// False if the standard error is unknown.
+  bool exceeds() const { return gain > margin; }
+  bool ranks_tell() const { return rank_p < 0.05; }
+  /// Significant by the paired t-test (one-sided, 2.5 %) and, as one odd run can distort it, by signed ranks (5 %).
+  bool told() const { return exceeds() && ranks_tell(); }
+  bool counts() const { return told() && gain >= negligible_gain; }
+  bool falls_short() const { return gain < -margin; }
+};
+
+/// `better`, `other`: log densities of each run's samples [nats], NaN if missing. The standard error of the mean m of N
+/// differences is clustered by G runs, with n_r samples and sum d_r (linearised ratio: Cochran 1977, section 6.3):
+///   SE^2 = G / (G - 1) sum_r (d_r - m n_r)^2 / N^2,   df = G - 1.
+/// With fewer than five runs the clusters are moving blocks of b samples inside runs (Kuensch 1989, Annals of
+/// Statistics 17), at least two autocorrelation times of the differences long. S_i is the sum over block i, B the
+/// number of blocks that fit side by side; with fewer than eight the error is unknown (NaN):
+///   SE^2 = B / (B - 1) mean_i (S_i - b m)^2 / (b N),   df = B - 1.
+PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
+                       const std::vector<Eigen::VectorXd>& other);
+
+/// not_yet: step_scatter or pattern must be settled first. not_comparable: measurements are repeated too often.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
 
 template <>
@@ -32,11 +61,10 @@ struct EnumNames<Answer> {
 /// The competitors of a bank, the simplest description first.
 inline constexpr std::array<const char*, 5> competitor_names{"baseline", "noise_only", "one_motion", "drifting",
                                                              "nonlinear"};
-/// A competitor's description of the runs, such as "one linear model with constant noise"; empty for other names.
+/// A competitor's description of the runs in words; empty for other names.
 const char* description_of(const std::string& competitor);
 
-/// The simplest description of the judged runs' motion that the scores allow. none: no run was judged, or the result is
-/// inconclusive.
+/// The simplest description of the judged runs' motion that the scores allow. none: the result is inconclusive.
 enum class Description { none, one_linear_motion, one_drifting_motion, one_nonlinear_motion, several_modes };
 
 template <>
@@ -45,21 +73,14 @@ struct EnumNames<Description> {
                                    "several modes"};
 };
 
-/// Why an answer is `cannot tell`.
-/// - within_chance: the gain over some competitor is not significant.
-/// - small_gain: the gain is significant but too small.
-/// - short_stays: Finding::stay is below stay_asked.
+/// Why an answer is `cannot tell`. within_chance: the gain over some competitor is not significant. small_gain: it is
+/// significant, but may be negligible. short_stays: Finding::stay is below stay_asked.
 enum class Doubt { nothing_held_out, no_competitor, few_samples, within_chance, small_gain, short_stays };
-
-/// Loss below which a description counts as equally good [nats per sample]. The choice of the number of modes uses the
-/// same value (rule.hpp).
-inline constexpr double negligible_gain = 0.02;
 
 /// The part of a bank's training errors that can be predicted from past errors and inputs.
 struct ErrorPattern {
-  double gain = not_a_number;  ///< gain from predicting the errors, on left-out parts of the runs [nats/sample]; NaN
-                               ///< means unknown
-  double standard_error = not_a_number;  ///< standard error of the gain over these parts [nats/sample]
+  double gain = not_a_number;            ///< from predicting the errors of left-out parts of the runs [nats/sample]
+  double standard_error = not_a_number;  ///< of the gain, over these parts
 
   /// Whether the gain is not negligible and exceeds two standard errors.
   bool told() const { return gain >= negligible_gain && gain > 2.0 * standard_error; }
@@ -74,13 +95,11 @@ struct Densities {
 /// Resolution of a state's measurement.
 struct Resolution {
   std::string state;
-  double repeated = 0.0;  ///< share of the samples in motion that equal the previous sample; 0 if a known quantum
-                          ///< explains repetitions
+  double repeated = 0.0;  ///< share of the samples in motion that equal the one before; 0 with a known quantum
   double sd = 0.0;        ///< standard deviation of the samples [state unit]; 0 if unknown
 };
 
-/// Limit on the share of repeated samples; above the limit, densities are not compared. In noisy measurements two
-/// samples are hardly ever equal to the last digit.
+/// Share of repeated samples above which densities are not compared. Noisy measurements hardly ever repeat.
 inline constexpr double repeated_share = 0.1;
 
 /// A competitor with a smaller root mean square error than the bank over the judged runs.
@@ -99,8 +118,7 @@ struct Finding {
   Eigen::Index modes = 0;             ///< number of modes of the bank
   double step_scatter = 0.0;          ///< standard deviation of the time steps, divided by their median
   ErrorPattern pattern;               ///< pattern in the errors of the bank
-  double stay = not_a_number;         ///< mean stay in a mode (harmonic mean over the judged samples) [samples]; NaN if
-                                      ///< unknown
+  double stay = not_a_number;         ///< mean stay in a mode (harmonic mean) [samples]; NaN if unknown
   double stay_asked = 0.0;            ///< smallest stay for evidence [samples]
   std::vector<Resolution> repeating;  ///< states for which densities are not comparable
   bool without_noise = false;         ///< whether one linear model explains the runs up to rounding
@@ -111,19 +129,17 @@ struct Finding {
   Description description = Description::none;
   std::string better_description;  ///< competitor that describes the runs in place of modes; empty if there is none
   std::vector<BetterMean> better_means;
-  std::vector<std::pair<std::string, double>> coefficients;  ///< coefficients of one linear model; empty if the model
-                                                             ///< leaves noise
-  std::vector<std::string> equations;  ///< equations of the nonlinear motion, if it describes the runs in place of
-                                       ///< modes
+  std::vector<std::pair<std::string, double>> coefficients;  ///< of one linear model that leaves no noise
+  std::vector<std::string> equations;  ///< of the nonlinear motion, if it describes the runs in place of modes
   std::string text;                    ///< the finding in plain sentences, filled in by the output
 
   bool held_out() const { return role == Role::test; }
 };
 
-/// The first reason for the answer `cannot tell` in the numbers of a finding.
+/// The first reason for the answer `cannot tell`.
 Doubt doubt_of(const Finding& finding);
-/// The competitor over which the bank's gain is least significant (gain divided by its margin). A competitor with an
-/// insignificant gain comes first. Null if no gain has a margin.
+/// The gain that is least significant (gain divided by its margin); an insignificant one comes first. Null if a margin
+/// is unknown.
 const PairedGain* least_beaten(const Finding& finding);
 
 struct FindingInputs {
@@ -143,15 +159,13 @@ struct FindingInputs {
 /// Decides whether the runs require modes.
 /// - not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
 /// - one mode: the bank has one mode, or one linear model leaves no noise (scores are then scores of rounding).
-/// - evidence: the gain over each competitor is significant (paired_gain.hpp) and not negligible, and stays are long
-///   enough. Modes that differ in noise alone gain nothing over `one_motion`, which has their noises. A stay must last
-///   at least five samples and the memory of the model. Shorter stays appear with noisy inputs or a delay that differs
-///   between runs; competitors do not model these effects.
+/// - evidence: the gain over each competitor is significant and not negligible, and stays last at least five samples
+///   and the memory of the model. Shorter stays appear with noisy inputs or a delay that differs between runs, which
+///   competitors do not model. Modes that differ in noise alone gain nothing over `one_motion`, which has their noises.
 /// - no evidence: the gain over a competitor is known to be negligible, since even its upper limit is.
 /// - cannot tell: all other cases, such as no held-out runs, or too few samples for a margin.
-/// If the bank is not significantly better than the best competitor, better_description is the simplest competitor that
-/// is as good as these two. A competitor is as good if it loses less than 0.02 nats, or if neither a t-test nor
-/// Wilcoxon's test over runs separates the two.
+/// Without a gain that counts over the best competitor, better_description is the simplest one as good as the best and
+/// the bank: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's test over runs separates the two.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

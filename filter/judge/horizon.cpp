@@ -6,39 +6,24 @@
 #include <utility>
 
 #include "filter/judge/sample_paths.hpp"
-#include "filter/judge/statistics.hpp"
+#include "filter/step/drifting.hpp"
 #include "filter/step/gaussian.hpp"
-#include "filter/step/imm_filter.hpp"
-#include "ident/base/distributions.hpp"
+#include "filter/step/imm.hpp"
+#include "filter/step/samples.hpp"
+#include "ident/base/interruption.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
+#include "ident/base/seed.hpp"
 
 namespace modebank {
-
 namespace {
 
 using Eigen::Index;
+using ConstVector = Eigen::Ref<const Eigen::VectorXd>;
 
-/// Forecast of a bank by the moments of its modes.
-template <int N, int NY>
-class MomentForecast final : public Forecast {
- public:
-  explicit MomentForecast(const ImmFilter<N, NY>& bank) : bank_(bank) {}
-  void start(const ImmFilter<N, NY>& origin) { bank_.start(origin); }
-  void step(const Vector& inputs) override { bank_.step(inputs); }
-
-  double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override { return bank_.observe(y, error); }
-  Eigen::VectorXd mode_probability() const override { return bank_.predicted_probability(); }
-
- private:
-  ImmFilter<N, NY> bank_;
-
-  SignalMixture signal(Index i) const override { return bank_.signal(i); }
-};
-
-/// Log density of a mixture of levels whose variances are multiplied by `factor`. `whitened`, `log_weight`: of one
-/// sample (LevelErrors).
-double log_density(const StudentNoise& noise, const Eigen::Ref<const Eigen::VectorXd>& whitened,
-                   const Eigen::Ref<const Eigen::VectorXd>& log_weight, double factor) {
+/// Log density of one sample's LevelErrors if the variances are multiplied by `factor`.
+double log_density(const StudentNoise& noise, const ConstVector& whitened, const ConstVector& log_weight,
+                   double factor) {
   const Index n = whitened.size() / log_weight.size();
   Eigen::VectorXd each = log_weight.array() - 0.5 * static_cast<double>(n) * std::log(factor);
   for (Index j = 0; j < each.size(); ++j)
@@ -47,39 +32,49 @@ double log_density(const StudentNoise& noise, const Eigen::Ref<const Eigen::Vect
   return highest + std::log((each.array() - highest).exp().sum());
 }
 
-/// Forecast of a bank with running noise.
-class RunningNoiseForecast final : public Forecast {
+/// Forecast of a bank with running noise. `merged`: whether all noise levels are one Gaussian.
+class RunningNoiseForecast {
  public:
-  /// `merged`: whether all noise levels are one Gaussian.
   RunningNoiseForecast(const Bank& bank, bool merged)
       : merged_(merged), running_(bank.running_noise), noise_(running_.nu), forecast_(bank) {}
+
   void start(const DriftingFilter& origin) { forecast_.start(origin); }
-  void step(const Vector& inputs) override { forecast_.step(inputs); }
-  void arrive(Index samples) override {
+  void step(const ConstVector& inputs) { forecast_.step(inputs); }
+  void arrive(Index samples) {
     factor_ = running_.factor_at(samples);
-    if (merged_) covariance_ = forecast_.covariance();
+    weight_ = merged_ ? predicted_probability() : forecast_.level_probability();
+    covariance_.resize(weight_.size());
+    for (Index j = 0; j < weight_.size(); ++j)
+      covariance_[j] = merged_ ? forecast_.covariance() : forecast_.covariance(j).eval();
   }
 
-  double observe(const Vector& y, Eigen::Ref<Eigen::VectorXd> error) override {
+  Eigen::VectorXd predicted_probability() const { return Eigen::VectorXd::Ones(1); }
+  SignalMixture signal(Index i) const {
+    SignalMixture result{weight_, Eigen::VectorXd::Constant(weight_.size(), forecast_.prediction()(i)), weight_,
+                         noise_};
+    for (Index j = 0; j < weight_.size(); ++j)
+      result.deviation(j) = std::sqrt(std::max(factor_ * covariance_[j](i, i), least_variance));
+    return result;
+  }
+  double observe(const ConstVector& y, Eigen::Ref<Eigen::VectorXd> error) const {
     error = y - forecast_.prediction();
-    Eigen::VectorXd whitened(levels() * error.size()), log_weight(levels());
+    Eigen::VectorXd whitened(weight_.size() * error.size()), log_weight(weight_.size());
     whiten(y, whitened, log_weight);
     return measured_density(log_density(noise_, whitened, log_weight, factor_));
   }
-  Eigen::VectorXd mode_probability() const override { return Eigen::VectorXd::Ones(1); }
-
-  /// A column of LevelErrors: errors divided by their standard deviations and decorrelated in order.
-  void whiten(const Vector& y, Eigen::Ref<Eigen::VectorXd> whitened, Eigen::Ref<Eigen::VectorXd> log_weight) const {
+  /// A column of LevelErrors.
+  void whiten(const ConstVector& y, Eigen::Ref<Eigen::VectorXd> whitened,
+              Eigen::Ref<Eigen::VectorXd> log_weight) const {
     const Eigen::VectorXd error = y - forecast_.prediction();
-    for (Index j = 0; j < levels(); ++j) {
-      auto white = whitened.segment(j * error.size(), error.size());
-      const Eigen::MatrixXd S = covariance(j);
+    for (Index j = 0; j < weight_.size(); ++j) {
+      const Eigen::MatrixXd& S = covariance_[j];
       const Cholesky root(S);
       // a variance below the limit can only come from rounding
       const Eigen::ArrayXd deviation =
           root.definite() ? Eigen::ArrayXd(root.L().diagonal()) : S.diagonal().array().max(least_variance).sqrt();
-      white = root.definite() ? root.whiten(error) : Eigen::VectorXd(error.array() / deviation);
-      log_weight(j) = std::log(weight(j)) - deviation.log().sum();
+      whitened.segment(j * error.size(), error.size()) =
+          root.definite() ? root.whiten(error) : Eigen::VectorXd(error.array() / deviation);
+      log_weight(j) = std::log(weight_(j)) - deviation.log().sum();
     }
   }
 
@@ -89,116 +84,142 @@ class RunningNoiseForecast final : public Forecast {
   StudentNoise noise_;
   DriftingForecast forecast_;
   double factor_ = 1.0;
-  Eigen::MatrixXd covariance_;  ///< of all levels; only if they are merged
+  Eigen::VectorXd weight_;                   ///< probabilities of the levels; one element if they are merged
+  std::vector<Eigen::MatrixXd> covariance_;  ///< of each level
+};
 
-  Index levels() const { return merged_ ? 1 : forecast_.level_probability().size(); }
-  double weight(Index level) const { return merged_ ? 1.0 : forecast_.level_probability()(level); }
-  Eigen::MatrixXd covariance(Index level) const {
-    return merged_ ? covariance_ : Eigen::MatrixXd(forecast_.covariance(level));
-  }
-  SignalMixture signal(Index i) const override {
-    SignalMixture result{Eigen::VectorXd(levels()), Eigen::VectorXd::Constant(levels(), forecast_.prediction()(i)),
-                         Eigen::VectorXd(levels()), noise_};
-    for (Index j = 0; j < levels(); ++j) {
-      result.weight(j) = weight(j);
-      result.deviation(j) = std::sqrt(std::max(factor_ * covariance(j)(i, i), least_variance));
+/// A filter that goes through the instants of a run, and the forecast that starts from it: start(filter), step(inputs),
+/// arrive(samples) if it has this; then signal(i), the distribution of signal i by itself, observe(y, error), the joint
+/// log density of a complete measurement, and predicted_probability() of the modes.
+template <class Filter, class Forecast>
+struct Forecaster {
+  const Trajectory& run;
+  RunInstants instants;
+  Filter filter;
+  Forecast forecast;
+
+  Forecaster(const Bank& bank, const Trajectory& of_run, Filter of_filter, Forecast ahead)
+      : run(of_run), instants(bank, of_run), filter(std::move(of_filter)), forecast(std::move(ahead)) {}
+
+  Index sample(Index t) const { return instants.instants[t].sample; }
+
+  /// Predicts from the present instant t. Calls arrive(samples, k) at the `samples`-th sample k after t, until this
+  /// returns false or the stretch ends.
+  template <class Arrive>
+  void look_ahead(Index t, Arrive arrive) {
+    forecast.start(filter);
+    Index samples = 0;
+    while (instants.continues(t)) {
+      forecast.step(instants.inputs.col(++t));
+      if (sample(t) < 0) continue;
+      ++samples;
+      if constexpr (requires { forecast.arrive(samples); }) forecast.arrive(samples);
+      if (!arrive(samples, sample(t))) return;
     }
-    return result;
+  }
+
+  /// Filters the run and predicts from every sample. Calls filtered(k, log density) after each sample k, and
+  /// arrive(h, k) for every complete measurement k at the h-th of the ascending horizons, at least one.
+  template <class Filtered, class Arrive>
+  void predict_run(const std::vector<Index>& horizons, Filtered filtered, Arrive arrive) {
+    for (Index t = 0; t < instants.count(); ++t) {
+      const double density = follow(instants, t, run, filter);
+      if (sample(t) < 0) continue;
+      filtered(sample(t), density);
+      std::size_t next = 0;
+      look_ahead(t, [&](Index samples, Index k) {
+        if (samples != horizons[next]) return true;
+        if (missing_entries(run.state.col(k)) == 0) arrive(next, k);
+        return ++next < horizons.size();
+      });
+    }
   }
 };
 
-/// A filter, and the forecast that starts from it.
-template <class Filter, class Ahead>
-class FilterWithForecast final : public ForecastingFilter {
- public:
-  FilterWithForecast(const Bank& bank, const Trajectory& run, Filter filter, Ahead ahead)
-      : ForecastingFilter(bank, run), filter_(std::move(filter)), forecast_(std::move(ahead)) {}
-  void step_to(Index t) override { follow(moments(), t, run_, filter_); }
-  const Ahead& forecast() const { return forecast_; }
+auto running_noise_forecaster(const Bank& bank, const Trajectory& run, bool merged) {
+  return Forecaster(bank, run, DriftingFilter(bank), RunningNoiseForecast(bank, merged));
+}
 
- protected:
-  Forecast& start_forecast() override {
-    forecast_.start(filter_);
-    return forecast_;
+/// Calls use(forecaster) with that of the bank. The forecast of modes is by the moments of each (ImmFilter).
+template <class Use>
+void with_forecaster(const Bank& bank, const Trajectory& run, const FilterOptions& options, bool merged, Use use) {
+  if (!bank.running_noise.empty()) {
+    auto forecaster = running_noise_forecaster(bank, run, merged);
+    use(forecaster);
+    return;
   }
-
- private:
-  Filter filter_;
-  Ahead forecast_;
-};
-
-template <class Filter, class Ahead>
-auto make_filter(const Bank& bank, const Trajectory& run, Filter filter, Ahead ahead) {
-  return std::make_unique<FilterWithForecast<Filter, Ahead>>(bank, run, std::move(filter), std::move(ahead));
-}
-
-/// `merged`: see RunningNoiseForecast.
-auto running_noise_filter(const Bank& bank, const Trajectory& run, bool merged) {
-  validate(bank);
-  return make_filter(bank, run, DriftingFilter(bank), RunningNoiseForecast(bank, merged));
-}
-
-using AnyFilter = std::unique_ptr<ForecastingFilter>;
-
-AnyFilter moment_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  return with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() -> AnyFilter {
+  with_sizes(bank.structure.dimension(), bank.C.rows(), [&]<int N, int NY>() {
     const ImmFilter<N, NY> filter(bank, options);
-    return make_filter(bank, run, filter, MomentForecast<N, NY>(filter));
+    Forecaster forecaster(bank, run, filter, filter);
+    use(forecaster);
   });
 }
-
-}  // namespace
-
-AnyFilter forecasting_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
-  check_run(bank, run);
-  if (bank.running_noise.empty()) return moment_filter(bank, run, options);
-  return running_noise_filter(bank, run, false);
-}
-
-AnyFilter free_running_filter(const Bank& bank, const Trajectory& run, const FilterOptions& options, Index paths,
-                              std::uint64_t seed) {
-  check_run(bank, run);
-  if (!bank.running_noise.empty()) return running_noise_filter(bank, run, true);
-  if (bank.transition_logit.empty()) return moment_filter(bank, run, options);
-  return make_filter(bank, run, ImmFilter<Eigen::Dynamic, Eigen::Dynamic>(bank, options),
-                     SamplePaths(bank, paths, seed));
-}
-
-double LevelErrors::widening_gain(const StudentNoise& noise, Index k, double factor) const {
-  return log_density(noise, whitened.col(k), log_weight.col(k), factor) -
-         log_density(noise, whitened.col(k), log_weight.col(k), 1.0);
-}
-
-std::vector<LevelErrors> level_errors(const Bank& bank, const Trajectory& run, const std::vector<Index>& horizons) {
-  const Index J = bank.running_noise.levels();
-  std::vector<LevelErrors> out(horizons.size(),
-                               {Eigen::MatrixXd::Constant(J * bank.C.rows(), run.samples(), not_a_number),
-                                Eigen::MatrixXd::Constant(J, run.samples(), not_a_number)});
-  if (horizons.empty()) return out;
-  check_run(bank, run);
-  const auto filter = running_noise_filter(bank, run, false);
-  filter->predict_run(horizons, [&](const Forecast&, std::size_t h, Index k) {
-    filter->forecast().whiten(run.state.col(k), out[h].whitened.col(k), out[h].log_weight.col(k));
-  });
-  return out;
-}
-
-namespace {
 
 /// One sample ahead by running noise, the prediction is the filter's own: its levels have different means.
-void take_from_filter(const Bank& bank, const Trajectory& run, HorizonEvaluation& out) {
-  const RunInstants instants(bank, run);
-  DriftingFilter filter(bank);
+void take_prediction(const DriftingFilter& filter, Index k, double log_density, HorizonEvaluation& out) {
+  if (out.horizons.front() > 1 || std::isnan(out.log_density(0, k))) return;
   Eigen::VectorXd weight;
-  for (Index t = 0; t < instants.count(); ++t) {
-    const double log_density = follow(instants, t, run, filter);
-    const Index k = instants.instants[static_cast<std::size_t>(t)].sample;
-    if (k < 0 || std::isnan(out.log_density(0, k))) continue;
-    filter.weigh_levels(0, weight);
-    for (Index i = 0; i < out.error[0].rows(); ++i) out.pit[0](i, k) = filter.probability(i, 0.0, weight);
-    out.error[0].col(k) = filter.innovation();
-    out.log_density(0, k) = log_density;
+  filter.weigh_levels(0, weight);
+  for (Index i = 0; i < out.error[0].rows(); ++i) out.pit[0](i, k) = filter.probability(i, 0.0, weight);
+  out.error[0].col(k) = filter.innovation();
+  out.log_density(0, k) = log_density;
+}
+
+constexpr double band_level = 0.95;
+
+/// Stores what a forecast says of sample k, whose measurement is y. False if the mean is not finite.
+template <class Forecast>
+bool record(Forecast& forecast, const ConstVector& y, Index k, FreeRun& out) {
+  const bool complete = missing_entries(y) == 0;
+  Eigen::VectorXd mean(y.size());
+  for (Index i = 0; i < y.size(); ++i) mean(i) = forecast.signal(i).centre();
+  if (!mean.allFinite()) return false;
+  out.mean.col(k) = mean;
+  forecast.predicted_probability().maxCoeff(&out.mode(k));
+  for (Index i = 0; i < y.size(); ++i) {
+    const auto signal = forecast.signal(i);
+    out.deviation(i, k) = signal.standard_deviation();
+    out.lower(i, k) = signal.quantile(0.5 * (1.0 - band_level));
+    out.upper(i, k) = signal.quantile(0.5 * (1.0 + band_level));
+    if (complete) out.pit(i, k) = signal.probability(y(i));
   }
+  if (complete) out.log_density(k) = forecast.observe(y, mean);  // `mean` becomes the error
+  return true;
+}
+
+/// Filters the measured samples of a stretch and predicts the others, or says why it cannot. `where`: which stretch.
+template <class Filter, class Forecast>
+void predict_stretch(Forecaster<Filter, Forecast>& by, Index first, Index end, const std::string& where, Index samples,
+                     FreeRun& out) {
+  const std::vector<Instant>& instants = by.instants.instants;
+  const std::string measured = std::to_string(samples);
+  const Index last = first + samples - 1;
+  if (last + 1 >= end) {
+    out.notes.push_back("has " + std::to_string(end - first) + " samples" + where + ", of which " + measured +
+                        " are used as measured: no sample is left to predict");
+    return;
+  }
+  const Index origin = std::find_if(instants.begin(), instants.end(),
+                                    [last](const Instant& instant) { return instant.sample == last; }) -
+                       instants.begin();
+  if (origin == by.instants.count()) {  // a run has no instants before a filter starts
+    out.notes.push_back("has too few complete measurements among its first " + measured + " samples" + where +
+                        " for a filter to start");
+    return;
+  }
+  Index start = origin;
+  while (!instants[start].starts) --start;
+  for (Index t = start; t <= origin; ++t) {
+    interruption_point();
+    follow(by.instants, t, by.run, by.filter);
+  }
+  by.look_ahead(origin, [&](Index, Index k) {
+    interruption_point();
+    if (record(by.forecast, by.run.state.col(k), k, out)) return true;
+    out.notes.push_back("is predicted up to sample " + std::to_string(k - 1) + "; later predictions are not finite");
+    return false;
+  });
+  if constexpr (requires { by.forecast.lost(); }) out.lost_paths += by.forecast.lost();
 }
 
 }  // namespace
@@ -217,66 +238,75 @@ HorizonEvaluation empty_horizons(std::vector<Index> horizons, Index n_y, Index s
 
 HorizonEvaluation evaluate_horizons(const Bank& bank, const Trajectory& run, const FilterOptions& options,
                                     std::vector<Index> horizons) {
-  const std::unique_ptr<ForecastingFilter> filter = forecasting_filter(bank, run, options);
+  check_run(bank, run);
   HorizonEvaluation out = empty_horizons(std::move(horizons), bank.C.rows(), run.samples());
   if (out.horizons.empty()) return out;
-  filter->predict_run(out.horizons, [&](Forecast& forecast, std::size_t h, Index k) {
-    const auto y = run.state.col(k);
-    out.log_density(static_cast<Index>(h), k) = forecast.observe(y, out.error[h].col(k));
-    for (Index i = 0; i < y.size(); ++i) out.pit[h](i, k) = forecast.probability(i, y(i));
+  with_forecaster(bank, run, options, false, [&](auto& by) {
+    by.predict_run(
+        out.horizons,
+        [&](Index k, double log_density) {
+          if constexpr (requires { take_prediction(by.filter, k, log_density, out); })
+            take_prediction(by.filter, k, log_density, out);
+        },
+        [&](std::size_t h, Index k) {
+          const auto y = run.state.col(k);
+          out.log_density(h, k) = by.forecast.observe(y, out.error[h].col(k));
+          for (Index i = 0; i < y.size(); ++i) out.pit[h](i, k) = by.forecast.signal(i).probability(y(i));
+        });
   });
-  if (!bank.running_noise.empty() && out.horizons.front() == 1) take_from_filter(bank, run, out);
   return out;
 }
 
-std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
-  std::vector<HorizonSums> sums;
-  for (std::size_t h = 0; h < run.horizons.size(); ++h) {
-    const Eigen::MatrixXd& error = run.error[h];
-    HorizonSums& sum = sums.emplace_back(HorizonSums{run.horizons[h], 0, 0.0, Eigen::ArrayXd::Zero(error.rows())});
-    for (Index k = 0; k < error.cols(); ++k) {
-      const double value = run.log_density(static_cast<Index>(h), k);
-      if (std::isnan(value)) continue;
-      ++sum.samples;
-      sum.log_density += value;
-      sum.squared_error += error.col(k).array().square();
-      sum.inside += static_cast<double>(((run.pit[h].col(k).array() - 0.5).abs() <= 0.475).count());
+double LevelErrors::widening_gain(const StudentNoise& noise, Index k, double factor) const {
+  return log_density(noise, whitened.col(k), log_weight.col(k), factor) -
+         log_density(noise, whitened.col(k), log_weight.col(k), 1.0);
+}
+
+std::vector<LevelErrors> level_errors(const Bank& bank, const Trajectory& run, const std::vector<Index>& horizons) {
+  const Index J = bank.running_noise.levels();
+  std::vector<LevelErrors> out(horizons.size(),
+                               {Eigen::MatrixXd::Constant(J * bank.C.rows(), run.samples(), not_a_number),
+                                Eigen::MatrixXd::Constant(J, run.samples(), not_a_number)});
+  check_run(bank, run);
+  auto by = running_noise_forecaster(bank, run, false);
+  by.predict_run(
+      horizons, [](Index, double) {},
+      [&](std::size_t h, Index k) {
+        by.forecast.whiten(run.state.col(k), out[h].whitened.col(k), out[h].log_weight.col(k));
+      });
+  return out;
+}
+
+FreeRun free_run(const Bank& bank, const Trajectory& run, const FilterOptions& filter, const FreeRunOptions& options) {
+  const Index fewest = fewest_start_samples(bank.structure);
+  if (options.samples < fewest)
+    throw std::invalid_argument("a free run of this model starts from at least " + std::to_string(fewest) +
+                                " measured samples, not " + std::to_string(options.samples));
+  check_run(bank, run);
+  FreeRun out;
+  for (Eigen::MatrixXd* values : {&out.mean, &out.deviation, &out.lower, &out.upper, &out.pit})
+    values->setConstant(bank.C.rows(), run.samples(), not_a_number);
+  out.log_density.setConstant(run.samples(), not_a_number);
+  out.mode.setConstant(run.samples(), -1);
+  std::vector<Index> limits{0};  // the first samples of the stretches between gaps, and the number of samples
+  for (Index k = 1; k < run.samples(); ++k)
+    if (SampleFeed::steps_between(sample_time_s(run, k - 1), sample_time_s(run, k), bank.dt_s) > longest_gap_steps)
+      limits.push_back(k);
+  limits.push_back(run.samples());
+  const auto predict = [&](auto& by) {
+    for (std::size_t i = 0; i + 1 < limits.size(); ++i) {
+      const std::string where = limits.size() > 2 ? " from sample " + std::to_string(limits[i]) + " on" : "";
+      predict_stretch(by, limits[i], limits[i + 1], where, options.samples, out);
     }
-  }
-  return sums;
-}
-
-void pool(const std::vector<HorizonSums>& run, std::vector<HorizonSums>& all) {
-  if (all.empty()) {
-    all = run;
-    return;
-  }
-  for (std::size_t h = 0; h < all.size(); ++h) {
-    const HorizonSums& of = run.at(h);
-    all[h].samples += of.samples;
-    all[h].log_density += of.log_density;
-    all[h].squared_error += of.squared_error;
-    all[h].inside += of.inside;
-  }
-}
-
-std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
-                                           const std::vector<std::vector<HorizonSums>>& sums) {
-  std::vector<HorizonRow> rows;
-  const auto add_row = [&](Role role, const std::string& run, const HorizonSums& of) {
-    const double N = of.samples > 0 ? static_cast<double>(of.samples) : not_a_number;
-    const double inside = of.inside / (N * static_cast<double>(of.squared_error.size()));
-    rows.push_back(
-        {filter, role, run, of.horizon, of.samples, of.log_density / N, (of.squared_error / N).sqrt(), inside});
   };
-  using Sums = std::vector<HorizonSums>;
-  for (const Role role : {Role::train, Role::test})
-    sum_runs<Sums>(
-        runs, role, [&](std::size_t i, Sums& all) { pool(sums.at(i), all); },
-        [&](const Sums& all, const std::string& run) {
-          for (const HorizonSums& of : all) add_row(role, run, of);
-        });
-  return rows;
+  if (bank.running_noise.empty() && !bank.transition_logit.empty()) {
+    Forecaster by(bank, run, ImmFilter<Eigen::Dynamic, Eigen::Dynamic>(bank, filter),
+                  SamplePaths(bank, options.paths, derive_seed(options.seed, "free run " + run.run)));
+    predict(by);
+  } else {
+    with_forecaster(bank, run, filter, true, predict);
+  }
+  return out;
 }
 
 }  // namespace modebank

@@ -3,93 +3,167 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <stdexcept>
 
-#include "filter/judge/diagnostics.hpp"
 #include "ident/base/distributions.hpp"
-#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 
-namespace {
-
 using Eigen::Index;
 
-/// Sums over scored samples of one or more runs. A sample is scored by its available signals.
-struct ScoreSums {
-  Index samples = 0, nis_above = 0, nis_below = 0;
-  double log_density = 0.0;
-  Eigen::ArrayXd squared_error, errors;
-  BandCounts counts;
+namespace {
+
+/// A number of samples as a divisor; NaN for none.
+double divisor(Index samples) { return samples > 0 ? static_cast<double>(samples) : not_a_number; }
+
+/// A sample is scored by its available signals.
+SummaryRow summary_of(const std::vector<std::size_t>& runs, const std::vector<RunEvaluation>& evaluations,
+                      const std::vector<RunScores>& scores) {
+  SummaryRow row;
+  const Index n_y = evaluations.at(runs.front()).innovation.rows();
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(n_y), errors = squares;
+  std::vector<Interval> region{{0.0, 0.0}};  // of the NIS of 0 to n_y signals
+  for (double d = 1.0; d <= static_cast<double>(n_y); ++d)
+    region.push_back({chi_square_quantile(true_tail, d), chi_square_quantile(1.0 - true_tail, d)});
+  ScoredSignals signals;
   std::vector<double> pit, whiteness;
-
-  void add(const RunEvaluation& run, const RunScores& scores) {
-    if (errors.size() == 0) squared_error = errors = Eigen::ArrayXd::Zero(run.innovation.rows());
-    counts.begin_run(run);
-    for (Index k = 0; k < run.log_density.size(); ++k)
-      if (!std::isnan(run.log_density(k))) add_sample(run, k, scores);
-    whiteness.push_back(scores.whiteness_p);
-  }
-
-  SummaryRow row() const {
-    SummaryRow row;
-    const double N = samples > 0 ? static_cast<double>(samples) : not_a_number;
-    row.samples = samples;
-    row.log_score = log_density / N;
-    row.rmse = (squared_error / errors).sqrt();
-    row.nis_mean = mean_distance(counts.nis, static_cast<double>(errors.size()));
-    row.nis_above = static_cast<double>(nis_above) / N;
-    row.nis_below = static_cast<double>(nis_below) / N;
-    row.too_far = share_of(counts.far);
-    row.too_close = share_of(counts.close);
-    row.coverage_50 = 1.0 - share_of(counts.outside[0]);
-    row.coverage_90 = 1.0 - share_of(counts.outside[1]);
-    row.coverage_95 = 1.0 - share_of(counts.outside[2]);
-    row.coverage_99 = 1.0 - share_of(counts.outside[3]);
-    row.pit_distance = kolmogorov_distance(pit);
-    row.whiteness_p = fisher_p(whiteness);
-    return row;
-  }
-
- private:
-  std::vector<Interval> nis_tails_;  ///< limits of the tails for one signal, two signals, ...
-
-  void add_sample(const RunEvaluation& run, Index k, const RunScores& scores) {
-    ++samples;
-    log_density += run.log_density(k);
-    const auto there = (!run.pit.col(k).array().isNaN()).eval();
-    squared_error += there.select(run.innovation.col(k).array().square(), 0.0);
-    errors += there.cast<double>();
-    counts.add(run, scores, k);
-    for (Index i = 0; i < there.size(); ++i)
-      if (there(i)) pit.push_back(run.pit(i, k));
-    while (std::ssize(nis_tails_) < there.size()) {
-      const double degrees = static_cast<double>(nis_tails_.size() + 1);
-      nis_tails_.push_back({chi_square_quantile(true_tail, degrees), chi_square_quantile(1.0 - true_tail, degrees)});
+  for (const std::size_t i : runs) {
+    const RunEvaluation& run = evaluations.at(i);
+    signals.begin_run(run);
+    whiteness.push_back(scores.at(i).whiteness_p);
+    for (Index k = 0; k < run.log_density.size(); ++k) {
+      if (std::isnan(run.log_density(k))) continue;
+      ++row.samples;
+      row.log_score += run.log_density(k);
+      signals.add(run, scores[i], k);
+      const auto there = (!run.pit.col(k).array().isNaN()).eval();
+      squares += there.select(run.innovation.col(k).array().square(), 0.0);
+      errors += there.cast<double>();
+      row.nis_below += run.nis(k) < region[there.count()].lower ? 1.0 : 0.0;
+      row.nis_above += there.any() && run.nis(k) > region[there.count()].upper ? 1.0 : 0.0;
+      for (const double value : run.pit.col(k))
+        if (!std::isnan(value)) pit.push_back(value);
     }
-    if (!there.any()) return;
-    const Interval& tails = nis_tails_[static_cast<std::size_t>(there.count() - 1)];
-    nis_above += run.nis(k) > tails.upper;
-    nis_below += run.nis(k) < tails.lower;
   }
-};
+  const double N = divisor(row.samples);
+  row.log_score /= N;
+  row.rmse = (squares / errors).sqrt();
+  row.nis_mean = signals.nis.mean(static_cast<double>(n_y));
+  row.nis_above /= N;
+  row.nis_below /= N;
+  const auto inside = [&](double level) { return 1.0 - mean_of(outside_band(signals.z, level)); };
+  row.too_far = mean_of(outside_band(signals.z, 1.0 - true_tail));
+  row.too_close = inside(true_tail);
+  row.coverage_50 = inside(0.50);
+  row.coverage_90 = inside(0.90);
+  row.coverage_95 = inside(0.95);
+  row.coverage_99 = inside(0.99);
+  row.pit_distance = kolmogorov_distance(pit);
+  row.whiteness_p = fisher_p(whiteness);
+  return row;
+}
+
+FreeRunRow free_run_row(const std::vector<std::size_t>& runs, const std::vector<Trajectory>& all,
+                        const std::vector<FreeRun>& predicted) {
+  FreeRunRow row;
+  const Index n_y = all[runs.front()].state.rows();
+  Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(n_y), sum = squares, square_sum = squares, origin;
+  Eigen::ArrayXXd inside = Eigen::ArrayXXd::Zero(n_y, std::ssize(coverage_levels));
+  for (const std::size_t i : runs) {
+    row.lost_paths += predicted.at(i).lost_paths;
+    for (Index k = 0; k < all[i].samples(); ++k) {
+      if (std::isnan(predicted[i].log_density(k))) continue;
+      const Eigen::ArrayXd y = all[i].state.col(k);
+      if (row.samples++ == 0) origin = y;  // subtracted from all: so large measurements lose fewer digits
+      row.log_score += predicted[i].log_density(k);
+      squares += (y - predicted[i].mean.col(k).array()).square();
+      sum += y - origin;
+      square_sum += (y - origin).square();
+      for (Index b = 0; b < inside.cols(); ++b)
+        inside.col(b) += ((predicted[i].pit.col(k).array() - 0.5).abs() <= 0.5 * coverage_levels[b]).cast<double>();
+    }
+  }
+  const double N = divisor(row.samples);
+  row.log_score /= N;
+  row.rmse = (squares / N).sqrt();
+  const Eigen::ArrayXd variance = (square_sum / N - (sum / N).square()).max(0.0);
+  row.nrmse = (variance > 0.0).select(row.rmse.array() / variance.sqrt(), not_a_number);
+  row.fit = 100.0 * (1.0 - row.nrmse.array());
+  row.coverage_50 = inside.col(0) / N;
+  row.coverage_90 = inside.col(1) / N;
+  row.coverage_95 = inside.col(2) / N;
+  row.coverage_99 = inside.col(3) / N;
+  return row;
+}
 
 }  // namespace
 
 std::vector<SummaryRow> summarize(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
-  if (runs.size() != evaluations.size() || runs.size() != scores.size())
-    throw std::invalid_argument(std::to_string(runs.size()) + " runs, but " + std::to_string(evaluations.size()) +
-                                " evaluations and " + std::to_string(scores.size()) + " of them scored");
   std::vector<SummaryRow> rows;
-  sum_runs<ScoreSums>(
-      runs, role, [&](std::size_t i, ScoreSums& sums) { sums.add(evaluations[i], scores[i]); },
-      [&](const ScoreSums& sums, const std::string& run) {
-        rows.push_back(sums.row());
-        rows.back().filter = filter;
-        rows.back().role = role;
-        rows.back().run = run;
-      });
+  for (const RunGroup& group : run_groups(runs, role)) {
+    rows.push_back(summary_of(group.runs, evaluations, scores));
+    rows.back().filter = filter;
+    rows.back().role = role;
+    rows.back().run = group.name;
+  }
+  return rows;
+}
+
+std::vector<HorizonSums> sum_horizons(const HorizonEvaluation& run) {
+  std::vector<HorizonSums> sums;
+  for (std::size_t h = 0; h < run.horizons.size(); ++h) {
+    const Eigen::MatrixXd& error = run.error[h];
+    HorizonSums& sum = sums.emplace_back(HorizonSums{run.horizons[h], 0, 0.0, Eigen::ArrayXd::Zero(error.rows())});
+    for (Index k = 0; k < error.cols(); ++k) {
+      const double value = run.log_density(h, k);
+      if (std::isnan(value)) continue;
+      ++sum.samples;
+      sum.log_density += value;
+      sum.squared_error += error.col(k).array().square();
+      sum.inside += static_cast<double>(((run.pit[h].col(k).array() - 0.5).abs() <= 0.475).count());
+    }
+  }
+  return sums;
+}
+
+void pool(const std::vector<HorizonSums>& run, std::vector<HorizonSums>& all) {
+  if (all.empty())
+    for (const HorizonSums& of : run) all.push_back({of.horizon, 0, 0.0, 0.0 * of.squared_error});
+  for (std::size_t h = 0; h < all.size(); ++h) {
+    all[h].samples += run.at(h).samples;
+    all[h].log_density += run[h].log_density;
+    all[h].squared_error += run[h].squared_error;
+    all[h].inside += run[h].inside;
+  }
+}
+
+std::vector<HorizonRow> summarize_horizons(const std::string& filter, const std::vector<Trajectory>& runs,
+                                           const std::vector<std::vector<HorizonSums>>& sums) {
+  std::vector<HorizonRow> rows;
+  for (const Role role : {Role::train, Role::test})
+    for (const RunGroup& group : run_groups(runs, role)) {
+      std::vector<HorizonSums> all;
+      for (const std::size_t i : group.runs) pool(sums.at(i), all);
+      for (const HorizonSums& of : all) {
+        const double N = divisor(of.samples), inside = of.inside / (N * static_cast<double>(of.squared_error.size()));
+        rows.push_back({filter, role, group.name, of.horizon, of.samples, of.log_density / N,
+                        (of.squared_error / N).sqrt(), inside});
+      }
+    }
+  return rows;
+}
+
+std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std::vector<Trajectory>& runs,
+                                            const std::vector<FreeRun>& free_runs, const FreeRunOptions& options) {
+  std::vector<FreeRunRow> rows;
+  for (const Role role : {Role::train, Role::test})
+    for (const RunGroup& group : run_groups(runs, role)) {
+      rows.push_back(free_run_row(group.runs, runs, free_runs));
+      rows.back().filter = filter;
+      rows.back().role = role;
+      rows.back().run = group.name;
+      rows.back().start = options.samples;
+    }
   return rows;
 }
 
@@ -113,9 +187,8 @@ std::optional<ScoreGoal> goal_of(const std::string& score, int states) {
   if (kind.rfind("rmse", 0) == 0 || kind == "pit_distance") return ScoreGoal{Kind::lower};
   if (kind == "nis_mean") return ScoreGoal{Kind::nominal, static_cast<double>(states)};
   if (kind.rfind("too_", 0) == 0 || kind.rfind("nis_", 0) == 0) return ScoreGoal{Kind::nominal, true_tail};
-  for (std::size_t b = 0; b < coverage_levels.size(); ++b)
-    if (kind == "coverage_" + std::to_string(std::lround(100.0 * coverage_levels[b])))
-      return ScoreGoal{Kind::nominal, coverage_levels[b]};
+  for (const double level : coverage_levels)
+    if (kind == "coverage_" + std::to_string(std::lround(100.0 * level))) return ScoreGoal{Kind::nominal, level};
   return {};
 }
 

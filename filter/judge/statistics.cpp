@@ -11,6 +11,8 @@
 
 namespace modebank {
 
+using Eigen::Index;
+
 namespace {
 
 double sum_of(const SeriesByRun& series) {
@@ -21,40 +23,30 @@ double sum_of(const SeriesByRun& series) {
 }
 
 /// The runs of a series, relative to the mean of all runs.
-class CentredSeries {
- public:
-  explicit CentredSeries(const SeriesByRun& series) {
-    const double mean = mean_of(series);
-    for (const std::vector<double>& x : series)
-      runs_.emplace_back(Eigen::Map<const Eigen::ArrayXd>(x.data(), std::ssize(x)) - mean);
-  }
+std::vector<Eigen::ArrayXd> centred(const SeriesByRun& series) {
+  const double mean = mean_of(series);
+  std::vector<Eigen::ArrayXd> runs;
+  for (const std::vector<double>& x : series)
+    runs.emplace_back(Eigen::Map<const Eigen::ArrayXd>(x.data(), std::ssize(x)) - mean);
+  return runs;
+}
 
-  Eigen::Index longest() const {
-    Eigen::Index samples = 0;
-    for (const Eigen::ArrayXd& run : runs_) samples = std::max(samples, run.size());
-    return samples;
-  }
+/// Sum of the products of values `lag` samples apart within one run.
+double autocovariance(const std::vector<Eigen::ArrayXd>& runs, Index lag) {
+  double sum = 0.0;
+  for (const Eigen::ArrayXd& run : runs) sum += lagged_product(run, run, lag);
+  return sum;
+}
 
-  /// Sum of the products of values `lag` samples apart within one run.
-  double autocovariance(Eigen::Index lag) const {
-    double sum = 0.0;
-    for (const Eigen::ArrayXd& run : runs_) sum += lagged_product(run, run, lag);
-    return sum;
-  }
-
- private:
-  std::vector<Eigen::ArrayXd> runs_;
-};
-
-/// Autocorrelations at lags 1, 2, ... as long as the sums of successive pairs are positive. The first pair includes lag
-/// 0.
+/// Autocorrelations at lags 1, 2, ... as long as the sums of pairs, of lags 0 and 1 first, are positive.
 std::vector<double> autocorrelations(const SeriesByRun& series) {
-  const CentredSeries centred(series);
+  const std::vector<Eigen::ArrayXd> runs = centred(series);
+  const double variance = autocovariance(runs, 0);
+  Index longest = 0;
+  for (const Eigen::ArrayXd& run : runs) longest = std::max(longest, run.size());
   std::vector<double> result;
-  const double variance = centred.autocovariance(0);
-  if (!(variance > 0.0)) return result;
-  for (Eigen::Index lag = 0; lag + 1 < centred.longest(); lag += 2) {
-    const double even = lag == 0 ? variance : centred.autocovariance(lag), odd = centred.autocovariance(lag + 1);
+  for (Index lag = 0; lag + 1 < longest && variance > 0.0; lag += 2) {
+    const double even = lag == 0 ? variance : autocovariance(runs, lag), odd = autocovariance(runs, lag + 1);
     if (even + odd <= 0.0) break;
     if (lag > 0) result.push_back(even / variance);
     result.push_back(odd / variance);
@@ -69,7 +61,7 @@ double time_of(const std::vector<double>& correlations) {
 }
 
 /// Replaces every value by the normal quantile of its rank among all.
-SeriesByRun normal_scores(SeriesByRun series) {
+SeriesByRun normal_ranks(SeriesByRun series) {
   std::vector<double*> order;
   for (auto& x : series)
     for (double& value : x) order.push_back(&value);
@@ -90,19 +82,8 @@ double tail_correlation(double r) {
   return (both - true_tail * true_tail) / (true_tail * (1.0 - true_tail));
 }
 
-/// Mean distance per degree of freedom.
-double mean_per_degree(const SquaredDistances& d) {
-  return sample_count(d.value) > 0.0 ? sum_of(d.value) / sum_of(d.degrees) : not_a_number;
-}
-
-/// Deviation of each distance from its expected size, which is its degrees times the mean per degree. The mean of all
-/// deviations is zero.
-SeriesByRun deviations(const SquaredDistances& d) {
-  const double share = mean_per_degree(d);
-  SeriesByRun result = d.value;
-  for (std::size_t r = 0; r < result.size(); ++r)
-    for (std::size_t k = 0; k < result[r].size(); ++k) result[r][k] -= share * d.degrees[r][k];
-  return result;
+Index scored_signals(const RunEvaluation& evaluation, Index sample) {
+  return (!evaluation.pit.col(sample).array().isNaN()).count();
 }
 
 }  // namespace
@@ -113,26 +94,32 @@ Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit) {
 
 RunScores score_run(const RunEvaluation& e) {
   RunScores scores{normal_scores(e.pit), Eigen::VectorXi::Zero(e.log_density.size())};
-  SeriesByRun z(static_cast<std::size_t>(e.pit.rows()));
-  for (Eigen::Index k = 0; k < e.log_density.size(); ++k) {
+  SeriesByRun z(e.pit.rows());
+  for (Index k = 0; k < e.log_density.size(); ++k) {
     if (std::isnan(e.log_density(k))) continue;
     if (e.mode_probability_predicted.rows() > 1) e.mode_probability_predicted.col(k).maxCoeff(&scores.likeliest(k));
     for (std::size_t i = 0; i < z.size(); ++i)
-      if (const double score = scores.z(static_cast<Eigen::Index>(i), k); !std::isnan(score)) z[i].push_back(score);
+      if (const double score = scores.z(i, k); !std::isnan(score)) z[i].push_back(score);
   }
   scores.whiteness_p = whiteness_p(z);
-  return scores;
-}
-
-std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
-  std::vector<RunScores> scores;
-  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
   return scores;
 }
 
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options) {
   // Sample k + 1 is the end of transition k, whose input is u[k].
   return test_residuals(scores.z.rightCols(run.transitions()), run.input.leftCols(run.transitions()), options);
+}
+
+std::vector<RunGroup> run_groups(const std::vector<Trajectory>& runs, Role role) {
+  std::vector<RunGroup> groups;
+  RunGroup all{"*", {}};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (runs[i].role != role) continue;
+    groups.push_back({runs[i].run, {i}});
+    all.runs.push_back(i);
+  }
+  if (!groups.empty()) groups.push_back(all);
+  return groups;
 }
 
 double whiteness_p(const SeriesByRun& z) {
@@ -154,13 +141,12 @@ double kolmogorov_distance(std::vector<double> values) {
 }
 
 double ljung_box_p(const std::vector<double>& series) {
-  const CentredSeries centred({series});
-  const Eigen::Index N = static_cast<Eigen::Index>(series.size()),
-                     lags = std::min<Eigen::Index>(most_tested_lags, N / 5);
-  const double variance = centred.autocovariance(0);
+  const std::vector<Eigen::ArrayXd> run = centred({series});
+  const Index N = std::ssize(series), lags = std::min(most_tested_lags, N / 5);
+  const double variance = autocovariance(run, 0);
   if (lags < 1 || !(variance > 0.0)) return not_a_number;
   Eigen::VectorXd autocorrelation(lags + 1);
-  for (Eigen::Index k = 0; k <= lags; ++k) autocorrelation(k) = centred.autocovariance(k) / variance;
+  for (Index k = 0; k <= lags; ++k) autocorrelation(k) = autocovariance(run, k) / variance;
   return ljung_box_p(autocorrelation, N);
 }
 
@@ -185,24 +171,24 @@ double mean_of(const SeriesByRun& series) {
   return count > 0.0 ? sum_of(series) / count : not_a_number;
 }
 
-Autocorrelation largest_autocorrelation(const SeriesByRun& series, Eigen::Index most) {
-  const CentredSeries centred(series);
+Autocorrelation largest_autocorrelation(const SeriesByRun& series, Index most) {
+  const std::vector<Eigen::ArrayXd> runs = centred(series);
   Autocorrelation largest;
-  const double variance = centred.autocovariance(0);
-  const auto lags = std::min(most, static_cast<Eigen::Index>(sample_count(series)) / 5);
-  for (Eigen::Index lag = 1; lag <= lags && variance > 0.0; ++lag)
-    if (const double value = centred.autocovariance(lag) / variance; std::abs(value) > std::abs(largest.value))
+  const double variance = autocovariance(runs, 0);
+  const auto lags = std::min(most, static_cast<Index>(sample_count(series)) / 5);
+  for (Index lag = 1; lag <= lags && variance > 0.0; ++lag)
+    if (const double value = autocovariance(runs, lag) / variance; std::abs(value) > std::abs(largest.value))
       largest = {lag, value};
   return largest;
 }
 
 double autocorrelation_time(const SeriesByRun& series) {
-  return std::isnan(mean_of(series)) ? not_a_number : time_of(autocorrelations(series));
+  return sample_count(series) > 0.0 ? time_of(autocorrelations(series)) : not_a_number;
 }
 
 double autocorrelation_time_of_tail(const SeriesByRun& series) {
   if (sample_count(series) == 0.0) return not_a_number;
-  std::vector<double> correlations = autocorrelations(normal_scores(series));
+  std::vector<double> correlations = autocorrelations(normal_ranks(series));
   for (double& r : correlations) r = tail_correlation(r);
   return time_of(correlations);
 }
@@ -211,37 +197,27 @@ double cautious_time(double time, double samples) {
   return 1.0 + (time - 1.0) * (1.0 + std::sqrt((8.0 * time + 2.0) / samples));
 }
 
-void SquaredDistances::begin_run(std::size_t samples) {
-  value.emplace_back().reserve(samples);
-  degrees.emplace_back().reserve(samples);
+double SquaredDistances::mean(double of_all) const {
+  return sample_count(value) > 0.0 ? of_all * (sum_of(value) / sum_of(degrees)) : not_a_number;
 }
 
-void SquaredDistances::add(double distance, Eigen::Index d) {
-  if (d == 0) return;
-  value.back().push_back(distance);
-  degrees.back().push_back(static_cast<double>(d));
-}
-
-Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample) {
-  return (!evaluation.pit.col(sample).array().isNaN()).count();
-}
-
-double mean_distance(const SquaredDistances& distances, double of_all) { return of_all * mean_per_degree(distances); }
-
-Interval mean_distance_interval(const SquaredDistances& distances, double of_all, double level) {
-  const double count = sample_count(distances.value);
+Interval SquaredDistances::mean_interval(double of_all, double level) const {
+  const double count = sample_count(value), share = mean(1.0);
   if (count == 0.0) return {not_a_number, not_a_number};
-  const double time = cautious_time(autocorrelation_time(deviations(distances)), count);
-  const double total = std::max(1.0, sum_of(distances.degrees) / time), outside = 0.5 * (1.0 - level);
+  SeriesByRun away = value;  // from the expected size, which is the degrees times the mean per degree
+  for (std::size_t r = 0; r < away.size(); ++r)
+    for (std::size_t k = 0; k < away[r].size(); ++k) away[r][k] -= share * degrees[r][k];
+  const double time = cautious_time(autocorrelation_time(away), count);
+  const double total = std::max(1.0, sum_of(degrees) / time), outside = 0.5 * (1.0 - level);
   return {of_all * chi_square_quantile(outside, total) / total,
           of_all * chi_square_quantile(1.0 - outside, total) / total};
 }
 
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& e) {
-  const Eigen::Index all = e.pit.rows();
+  const Index all = e.pit.rows();
   Eigen::VectorXd nis = e.nis;
-  for (Eigen::Index k = 0; k < nis.size(); ++k) {
-    const Eigen::Index there = scored_signals(e, k);
+  for (Index k = 0; k < nis.size(); ++k) {
+    const Index there = scored_signals(e, k);
     if (there == 0 || there == all || std::isnan(nis(k))) continue;
     const double beyond = chi_square_upper_tail(nis(k), static_cast<double>(there));
     if (beyond > 0.0) nis(k) = chi_square_upper_quantile(beyond, static_cast<double>(all));
@@ -249,24 +225,33 @@ Eigen::VectorXd nis_of_all_signals(const RunEvaluation& e) {
   return nis;
 }
 
+void ScoredSignals::begin_run(const RunEvaluation& run) {
+  z.emplace_back().reserve(run.pit.size());
+  nis.value.emplace_back().reserve(run.pit.cols());
+  nis.degrees.emplace_back().reserve(run.pit.cols());
+}
+
+void ScoredSignals::add(const RunEvaluation& run, const RunScores& scores, Index k) {
+  for (const double value : scores.z.col(k))
+    if (!std::isnan(value)) z.back().push_back(value);
+  const Index signals = scored_signals(run, k);
+  if (signals == 0) return;
+  nis.value.back().push_back(run.nis(k));
+  nis.degrees.back().push_back(static_cast<double>(signals));
+}
+
+SeriesByRun outside_band(SeriesByRun z, double level) {
+  const double edge = normal_quantile(0.5 + 0.5 * level);
+  for (std::vector<double>& run : z)
+    for (double& value : run) value = std::abs(value) > edge ? 1.0 : 0.0;
+  return z;
+}
+
 Interval binomial_interval(double count, double samples, double level) {
   if (!(samples > 0.0)) return {not_a_number, not_a_number};
   const double misses = std::max(0.0, samples - count), beyond = 0.5 * (1.0 - level);
   return {count > 0.0 ? beta_quantile(beyond, count, misses + 1.0) : 0.0,
           misses > 0.0 ? beta_quantile(1.0 - beyond, count + 1.0, misses) : 1.0};
-}
-
-BandHits band_hits(double z) {
-  static const auto edges = [] {
-    std::array<double, coverage_levels.size()> of_level{};
-    for (std::size_t b = 0; b < of_level.size(); ++b) of_level[b] = normal_quantile(0.5 + 0.5 * coverage_levels[b]);
-    return of_level;
-  }();
-  static const double near_square = chi_square_quantile(true_tail, 1.0),
-                      far_square = chi_square_quantile(1.0 - true_tail, 1.0);
-  BandHits hits{{}, z * z > far_square, z * z < near_square};
-  for (std::size_t b = 0; b < edges.size(); ++b) hits.outside[b] = std::abs(z) > edges[b];
-  return hits;
 }
 
 }  // namespace modebank

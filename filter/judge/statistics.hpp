@@ -12,140 +12,105 @@
 
 namespace modebank {
 
-/// Statistics of a run derived from RunEvaluation's nis, pit and log_density. They are computed here once per sample,
-/// and all judgements use them.
+/// Statistics of a run's samples, computed once; all judgements use them.
 struct RunScores {
-  /// n_y x N, Phi^-1(pit): standard normal and white if the model is correct (innovations of a mixture are not
-  /// Gaussian). NaN if the signal was not measured.
-  Eigen::MatrixXd z;
-  /// N, mode most probable before the measurement; 0 for samples without a score.
-  Eigen::VectorXi likeliest;
-  /// p value of the hypothesis that z has no autocorrelation in the scored samples: Ljung & Box per output, pooled by
-  /// Fisher's method.
-  double whiteness_p = 0.0;
+  Eigen::MatrixXd z;  ///< n_y x N, Phi^-1(pit): white and standard normal if the model is correct; NaN if missing
+  Eigen::VectorXi likeliest;  ///< N, mode most probable before the measurement; 0 for samples without a score
+  double whiteness_p = 0.0;   ///< p value of the hypothesis that z has no autocorrelation (whiteness_p)
 };
 RunScores score_run(const RunEvaluation& evaluation);
 /// Phi^-1 of each transform, NaN if the transform is missing.
 Eigen::MatrixXd normal_scores(const Eigen::MatrixXd& pit);
-std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations);
 
-/// Residual tests of a filter's one-step predictions over one run. The residuals are z; input lag 0 is the input of the
-/// predicted transition. Throws std::invalid_argument if sizes disagree.
+/// Residual tests of z over one run; input lag 0 is the input of the predicted transition.
 ResidualTests test_innovations(const Trajectory& run, const RunScores& scores, const ResidualTestOptions& options = {});
 
-/// Sums the runs of a role: calls row(sums, name) for each run in order, then for all of them together, with the name
-/// "*". `add`: adds the i-th run to some sums, which are Sums() at first.
-template <class Sums, class Add, class Row>
-void sum_runs(const std::vector<Trajectory>& runs, Role role, Add add, Row row) {
-  Sums all;
-  bool any = false;
-  for (std::size_t i = 0; i < runs.size(); ++i) {
-    if (runs[i].role != role) continue;
-    Sums one;
-    add(i, one);
-    row(one, runs[i].run);
-    add(i, all);
-    any = true;
-  }
-  if (any) row(all, "*");
-}
+/// The runs of one row of a table.
+struct RunGroup {
+  std::string name;               ///< of the run; "*" for all runs of the role
+  std::vector<std::size_t> runs;  ///< positions
+};
+/// Each run of a role, then all of them together; nothing without runs.
+std::vector<RunGroup> run_groups(const std::vector<Trajectory>& runs, Role role);
 
 /// Kolmogorov's distance sup |F_n(u) - u| of the sample from the uniform distribution on [0, 1]; NaN without values.
 double kolmogorov_distance(std::vector<double> values);
-
 /// Ljung & Box's test of the series with min(20, N/5) lags. NaN if the series is constant or too short for one lag.
 double ljung_box_p(const std::vector<double>& series);
-
-/// Fisher's method: combined p value of all tests. -2 sum log p is chi-square with two degrees per test. NaN entries
-/// are ignored; the result is NaN if all are NaN.
+/// Fisher's method: combined p value of all tests; -2 sum log p is chi-square with two degrees per test. NaN entries
+/// are ignored; NaN if all are.
 double fisher_p(const std::vector<double>& p_values);
 
 /// A series per run, in time order.
 using SeriesByRun = std::vector<std::vector<double>>;
 
-/// p value of the hypothesis that no output has autocorrelation; NaN if every series is too short. `z`: one series per
-/// output.
+/// p value of the hypothesis that no output has autocorrelation: Ljung & Box per output, pooled by Fisher's method. NaN
+/// if every series is too short. `z`: one series per output.
 double whiteness_p(const SeriesByRun& z);
 
 double sample_count(const SeriesByRun& series);
-/// Mean over all values; NaN without values.
-double mean_of(const SeriesByRun& series);
+double mean_of(const SeriesByRun& series);  ///< NaN without values
 
-/// Largest lag of the tests of autocorrelation.
-inline constexpr Eigen::Index most_tested_lags = 20;
-
-/// An autocorrelation and its lag.
+inline constexpr Eigen::Index most_tested_lags = 20;  ///< of the tests of autocorrelation
 struct Autocorrelation {
   Eigen::Index lag = 0;
   double value = 0.0;
 };
-/// The autocorrelation of largest absolute value at lags 1 to min(most, N / 5), over all series together. The result
-/// has lag 0 if the series are too short.
+/// The one of largest size at lags 1 to min(most, N / 5), over all series together; lag 0 if these are too short.
 Autocorrelation largest_autocorrelation(const SeriesByRun& series, Eigen::Index most = most_tested_lags);
 
 /// Autocorrelation time, at least 1: variance of the mean, divided by its variance for independent terms (initial
 /// positive sequence: Geyer 1992, Statistical Science 7). NaN without values.
 double autocorrelation_time(const SeriesByRun& series);
-
-/// Autocorrelation time of the indicator that a value is among the largest (or smallest) 2.5 %. Such values are too few
-/// for a direct estimate. So the time follows from the autocorrelations of all values' normal scores, assumed jointly
-/// normal. NaN without values.
+/// That of the indicator that a value is among the largest 2.5 %. Such values are too few for a direct estimate, so it
+/// follows from the autocorrelations of all values' normal scores, assumed jointly normal.
 double autocorrelation_time_of_tail(const SeriesByRun& series);
 
-/// A cautious autocorrelation time from `samples` samples. Its excess over 1 is raised by the relative standard error
-/// (Madras & Sokal 1988, Journal of Statistical Physics 50). The error assumes lags up to twice the time.
+/// A cautious autocorrelation time from `samples` samples: its excess over 1 is raised by the relative standard error
+/// (Madras & Sokal 1988, Journal of Statistical Physics 50) for lags up to twice the time.
 double cautious_time(double time, double samples);
 
 struct Interval {
   double lower, upper;
 };
 
-/// Squared distances of single samples relative to the filter's covariance: NIS of the available signals, or NEES of
-/// the judged states. If the model is correct, a distance of d signals has mean d. It is chi-square with d degrees of
-/// freedom if the prediction is one Gaussian of known variance.
+/// NIS of single samples, of the available signals. If the model is correct, the NIS of d signals has mean d; it is
+/// chi-square with d degrees of freedom if the prediction is one Gaussian of known variance.
 struct SquaredDistances {
-  SeriesByRun value;
-  SeriesByRun degrees;  ///< degrees of freedom of each distance
+  SeriesByRun value, degrees;
 
-  /// `samples`: memory to reserve.
-  void begin_run(std::size_t samples = 0);
-  /// `d`: degrees of freedom. If `d` is 0, nothing is added.
-  void add(double distance, Eigen::Index d);
+  /// Sum of distances divided by the sum of degrees, times `of_all`, the degrees of a complete sample: `of_all` if the
+  /// model is correct, even with missing signals. NaN without samples.
+  double mean(double of_all) const;
+  /// Interval that contains the mean of a correct model with probability `level`. The sum is taken for chi-square, its
+  /// degrees divided by the (cautious) autocorrelation time of the distances about their share of the mean.
+  Interval mean_interval(double of_all, double level) const;
 };
 
-/// Number of scored signals of a sample.
-Eigen::Index scored_signals(const RunEvaluation& evaluation, Eigen::Index sample);
-
-/// Sum of distances divided by the sum of degrees, times `of_all`, the degrees of a complete sample. If the model is
-/// correct, the mean is therefore `of_all`, even with missing signals. A sample's weight is its degrees. NaN without
-/// samples.
-double mean_distance(const SquaredDistances& distances, double of_all);
-
-/// Interval that contains mean_distance of a correct model with probability `level`. The sum is treated as chi-square.
-/// Its degrees are divided by the autocorrelation time of the distances about their share of the mean, with a margin
-/// (cautious_time). Single distances must be chi-square. NaN without samples.
-Interval mean_distance_interval(const SquaredDistances& distances, double of_all, double level);
-
-/// NIS of every sample on the scale of all signals, N. So one region applies to all samples. If signals are missing,
-/// the NIS is converted to the value for all signals with the same tail probability. NaN if no signal was measured.
+/// NIS of every sample on the scale of all signals, N, so that one region applies: if signals are missing, the value
+/// for all signals with the same tail probability. NaN if no signal was measured.
 Eigen::VectorXd nis_of_all_signals(const RunEvaluation& evaluation);
 
-/// Levels of the central bands whose coverage is counted, and the level that decides.
+/// Levels of the central bands whose coverage is counted.
 inline constexpr std::array<double, 4> coverage_levels{0.50, 0.90, 0.95, 0.99};
-inline constexpr std::size_t deciding_level = 2;
+inline constexpr double true_tail = 0.025;  ///< probability of each of the two tails if the model is correct
 
-/// Probability of each of the two tails if the model is correct.
-inline constexpr double true_tail = 0.025;
+/// The scored signals of some samples: all counts of coverage and tails refer to them.
+struct ScoredSignals {
+  SeriesByRun z;         ///< in time order; the signals of a sample stand next to each other
+  SquaredDistances nis;  ///< of each sample with a signal
 
-/// Bands and tails of a normal score z. All counts of coverage and tails use them.
-struct BandHits {
-  std::array<bool, coverage_levels.size()> outside;  ///< whether |z| lies outside each central band
-  bool far, close;  ///< whether z^2 is above the upper, or below the lower true_tail quantile of chi-square(1)
+  /// Starts the next run, with memory for all its samples: growing series would take up to twice the memory.
+  void begin_run(const RunEvaluation& run);
+  void add(const RunEvaluation& run, const RunScores& scores, Eigen::Index k);
 };
-BandHits band_hits(double z);
 
-/// Confidence limits of a probability from `count` successes in `samples` independent trials (Clopper & Pearson 1934).
-/// Fractional counts are allowed. NaN without samples.
+/// 1 where z lies outside the central band of this level, else 0. z^2 is beyond a quantile of chi-square(1) where z is
+/// outside the band of the quantile's probability.
+SeriesByRun outside_band(SeriesByRun z, double level);
+
+/// Confidence limits of a probability from `count` (fractional, too) successes in `samples` independent trials (Clopper
+/// & Pearson 1934). NaN without samples.
 Interval binomial_interval(double count, double samples, double level = 0.95);
 
 }  // namespace modebank

@@ -13,97 +13,84 @@ namespace {
 
 using Eigen::Index;
 
-modebank::Mode to_internal(const Mode& mode, Index n, Index m) {
-  modebank::Mode result;
-  result.model = {view(mode.A), view(mode.B), view(mode.c)};
-  result.Q = view(mode.Q);
-  result.parameter_covariance = view(mode.parameter_covariance);
-  result.weight = mode.weight;
-  // Omitted fields mean zero: no constant, no input effect.
-  if (result.model.c.size() == 0) result.model.c.setZero(n);
-  if (result.model.B.size() == 0) result.model.B.setZero(n, m);
-  return result;
+// A step's estimate allocates only on the first call, when sizes differ.
+template <class Derived>
+void assign(const Eigen::PlainObjectBase<Derived>& from, std::vector<double>& to) {
+  to.assign(from.data(), from.data() + from.size());
+}
+template <class Derived>
+void assign(const Eigen::PlainObjectBase<Derived>& from, Matrix& to) {
+  to.rows = from.rows();
+  to.cols = from.cols();
+  assign(from, to.values);
+}
+void assign(const Matrix& from, Eigen::MatrixXd& to) { to = view(from); }
+void assign(const std::vector<double>& from, Eigen::VectorXd& to) { to = view(from); }
+template <class Part>
+void assign(const Part& from, Part& to) {
+  to = from;
 }
 
-LinearStructure structure_of(const BankDescription& d) {
-  if (d.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
-  if (d.state_lags < 1 || d.modes.front().A.rows % d.state_lags != 0)
-    throw std::invalid_argument("A has " + std::to_string(d.modes.front().A.rows) + " rows, not a multiple of " +
-                                std::to_string(d.state_lags) + " state lags");
-  return {d.modes.front().A.rows / d.state_lags,
-          d.inputs,
-          d.intercept,
-          d.state_lags,
-          d.input_lags,
-          d.input_delay,
-          d.centre};
+/// Calls visit(part, same part of the bank) for the parts that a description and a bank have.
+template <class Description, class Numbers, class Visit>
+void each_part_of_bank(Description& d, Numbers& bank, Visit visit) {
+  visit(d.C, bank.C);
+  visit(d.R, bank.R);
+  visit(d.quantum, bank.quantum);
+  visit(d.state_dependent_transition.weights, bank.transition_logit.weights);
+  visit(d.state_dependent_transition.reference, bank.transition_logit.reference);
+  visit(d.initial_probability, bank.initial_probability);
+  visit(d.state_names, bank.state_names);
+  visit(d.input_names, bank.input_names);
+  visit(d.dt_s, bank.dt_s);
+  visit(d.inputs, bank.structure.inputs);
+  visit(d.state_lags, bank.structure.state_lags);
+  visit(d.input_lags, bank.structure.input_lags);
+  visit(d.input_delay, bank.structure.input_delay);
+  visit(d.intercept, bank.structure.intercept);
+  visit(d.centre, bank.structure.centre);
+  visit(d.noise_by_state.directions, bank.noise_factor.directions);
+  visit(d.noise_by_state.weights, bank.noise_factor.weights);
+  visit(d.noise_by_state.offset, bank.noise_factor.offset);
+  visit(d.drift.scale, bank.drift.scale);
+  visit(d.drift.rate, bank.drift.rates.q);
+  visit(d.drift.start, bank.drift.rates.p0);
+  visit(d.drift.leak, bank.drift.rates.leak);
+  visit(d.running_noise.floor, bank.running_noise.floor);
+  visit(d.running_noise.forgetting, bank.running_noise.lam);
+  visit(d.running_noise.degrees_of_freedom, bank.running_noise.nu);
+  visit(d.running_noise.level, bank.running_noise.level);
+  visit(d.running_noise.transition, bank.running_noise.switching);
 }
 
-modebank::RunningNoise to_internal(const RunningNoise& noise) {
-  modebank::RunningNoise result{noise.forgetting, noise.degrees_of_freedom, view(noise.floor)};
-  if (noise.horizon.size() != noise.factor.size())
-    throw std::invalid_argument("running noise needs one factor per horizon");
-  for (std::size_t i = 0; i < noise.horizon.size(); ++i)
-    result.horizon_factor.emplace_back(static_cast<Index>(noise.horizon[i]), noise.factor[i]);
-  result.level = view(noise.level);
-  result.switching = view(noise.transition);
-  return result;
-}
-RunningNoise from_internal(const modebank::RunningNoise& noise) {
-  RunningNoise result;
-  result.floor = to_vector(noise.floor);
-  result.forgetting = noise.lam;
-  result.degrees_of_freedom = noise.nu;
-  for (const auto& [horizon, factor] : noise.horizon_factor) {
-    result.horizon.push_back(static_cast<double>(horizon));
-    result.factor.push_back(factor);
-  }
-  result.level = to_matrix(noise.level);
-  result.transition = to_matrix(noise.switching);
-  return result;
-}
-
+/// Omitted fields have their defaults: no constant, no input effect, C = I, equally probable modes.
 std::shared_ptr<const modebank::Bank> to_internal(const BankDescription& d) {
+  if (d.modes.empty()) throw std::invalid_argument("a bank needs at least one mode");
+  const Index n = d.modes.front().A.rows, K = std::ssize(d.modes);
+  if (d.state_lags < 1 || n % d.state_lags != 0)
+    throw std::invalid_argument("A has " + std::to_string(n) + " rows, not a multiple of " +
+                                std::to_string(d.state_lags) + " state lags");
+  if (d.running_noise.horizon.size() != d.running_noise.factor.size())
+    throw std::invalid_argument("running noise needs one factor per horizon");
   modebank::Bank bank;
-  bank.structure = structure_of(d);
-  const Index n = bank.structure.dimension(), K = static_cast<Index>(d.modes.size());
-  for (const Mode& mode : d.modes) bank.modes.push_back(to_internal(mode, n, bank.structure.acting_inputs()));
-  bank.C = d.C.values.empty() ? Eigen::MatrixXd::Identity(bank.structure.states, n) : Eigen::MatrixXd(view(d.C));
-  bank.R = view(d.R);
-  bank.quantum = view(d.quantum);
+  each_part_of_bank(d, bank, [](const auto& from, auto& to) { assign(from, to); });
+  bank.structure.states = n / d.state_lags;
+  for (const Mode& mode : d.modes) {
+    modebank::Mode& to = bank.modes.emplace_back();
+    to.model = {view(mode.A), view(mode.B), view(mode.c)};
+    if (mode.B.values.empty()) to.model.B.setZero(n, bank.structure.acting_inputs());
+    if (mode.c.empty()) to.model.c.setZero(n);
+    to.Q = view(mode.Q);
+    to.parameter_covariance = view(mode.parameter_covariance);
+    to.weight = mode.weight;
+  }
+  if (d.C.values.empty()) bank.C.setIdentity(bank.structure.states, n);
+  if (d.initial_probability.empty()) bank.initial_probability.setConstant(K, 1.0 / static_cast<double>(K));
   bank.transition = TransitionMatrix(view(d.transition));
-  if (const StateDependentTransition& t = d.state_dependent_transition; !t.weights.values.empty())
-    bank.transition_logit = {view(t.weights), view(t.reference)};
-  bank.initial_probability = d.initial_probability.empty() ? Eigen::VectorXd::Constant(K, 1.0 / static_cast<double>(K))
-                                                           : Eigen::VectorXd(view(d.initial_probability));
-  bank.state_names = d.state_names;
-  bank.input_names = d.input_names;
-  bank.dt_s = d.dt_s;
-  if (const NoiseByState& noise = d.noise_by_state; !noise.weights.empty())
-    bank.noise_factor = {view(noise.directions), view(noise.weights), noise.offset};
-  bank.drift = {{d.drift.rate, d.drift.start, d.drift.leak}, view(d.drift.scale), d.drift.wandering};
-  bank.running_noise = to_internal(d.running_noise);
-  validate(bank);
-  return std::make_shared<const modebank::Bank>(std::move(bank));
-}
-
-/// Copies; allocates only on the first call, when sizes differ.
-template <class Source>
-void assign(const Source& source, std::vector<double>& target) {
-  target.assign(source.data(), source.data() + source.size());
-}
-template <class Source>
-void assign(const Source& source, Matrix& target) {
-  target.rows = source.rows();
-  target.cols = source.cols();
-  assign(source, target.values);
-}
-
-void assign(const FilterEstimate& source, Estimate& target) {
-  each_part(source, target, [](const auto& from, auto& to) { assign(from, to); });
-  target.nis = source.nis;
-  target.log_density = source.log_density;
-  target.steps = source.steps;
+  for (std::size_t i = 0; i < d.running_noise.horizon.size(); ++i)
+    bank.running_noise.horizon_factor.emplace_back(static_cast<Index>(d.running_noise.horizon[i]),
+                                                   d.running_noise.factor[i]);
+  return std::make_shared<const modebank::Bank>(validate(bank));
 }
 
 }  // namespace
@@ -119,30 +106,15 @@ double Bank::dt_s() const { return bank_->dt_s; }
 
 BankDescription Bank::description() const {
   BankDescription d;
+  each_part_of_bank(d, *bank_, [](auto& to, const auto& from) { assign(from, to); });
   for (const modebank::Mode& mode : bank_->modes)
     d.modes.push_back({to_matrix(mode.model.A), to_matrix(mode.model.B), to_vector(mode.model.c), to_matrix(mode.Q),
                        to_matrix(mode.parameter_covariance), mode.weight});
-  d.C = to_matrix(bank_->C);
-  d.R = to_matrix(bank_->R);
-  d.quantum = to_vector(bank_->quantum);
   d.transition = to_matrix(bank_->transition.matrix());
-  d.state_dependent_transition = {to_matrix(bank_->transition_logit.weights),
-                                  to_vector(bank_->transition_logit.reference)};
-  d.initial_probability = to_vector(bank_->initial_probability);
-  d.state_names = bank_->state_names;
-  d.input_names = bank_->input_names;
-  d.dt_s = bank_->dt_s;
-  d.inputs = bank_->structure.inputs;
-  d.state_lags = bank_->structure.state_lags;
-  d.input_lags = bank_->structure.input_lags;
-  d.input_delay = bank_->structure.input_delay;
-  d.intercept = bank_->structure.intercept;
-  d.centre = bank_->structure.centre;
-  d.noise_by_state = {to_matrix(bank_->noise_factor.directions), to_vector(bank_->noise_factor.weights),
-                      bank_->noise_factor.offset};
-  d.drift = {to_vector(bank_->drift.scale), bank_->drift.rates.q, bank_->drift.rates.p0, bank_->drift.rates.leak,
-             bank_->drift.wandering};
-  d.running_noise = from_internal(bank_->running_noise);
+  for (const auto& [horizon, factor] : bank_->running_noise.horizon_factor) {
+    d.running_noise.horizon.push_back(static_cast<double>(horizon));
+    d.running_noise.factor.push_back(factor);
+  }
   return d;
 }
 
@@ -153,14 +125,19 @@ struct BankFilter::Internal {
   std::uint64_t seed = pit_seed(1, "");
   Index samples = 0;  ///< number of samples processed so far
 
-  Internal(const Bank& bank, const FilterOptions& options)
-      : filter(bank.internal(), options), inputs(bank.inputs()), measurements(bank.measurements()) {
-    assign(filter.estimate(), estimate);
+  void take_estimate() {
+    const FilterEstimate& from = filter.estimate();
+    each_part(from, estimate, [](const auto& part, auto& to) { assign(part, to); });
+    estimate.nis = from.nis;
+    estimate.log_density = from.log_density;
+    estimate.steps = from.steps;
   }
 };
 
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : internal_(std::make_unique<Internal>(bank, options)) {}
+    : internal_(new Internal{{bank.internal(), options}, bank.inputs(), bank.measurements()}) {
+  internal_->take_estimate();
+}
 BankFilter::~BankFilter() = default;
 BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
@@ -174,23 +151,20 @@ void BankFilter::check_sizes(std::ptrdiff_t inputs, std::ptrdiff_t measurements)
 
 const Estimate& BankFilter::step(double time_s, const double* input, const double* measurement) {
   using Numbers = Eigen::Map<const Eigen::VectorXd>;
+  const auto& [filter, inputs, measurements, estimate, seed, samples] = *internal_;
   const FilterEstimate& said =
-      internal_->filter.step(time_s, Numbers(input, internal_->inputs), Numbers(measurement, internal_->measurements));
-  assign(said, internal_->estimate);
+      internal_->filter.step(time_s, Numbers(input, inputs), Numbers(measurement, measurements));
+  internal_->take_estimate();
   if ((said.pit_width.array() > 0.0).any())
-    draw_pit(internal_->seed, internal_->samples, said.pit_width,
-             Eigen::Map<Eigen::VectorXd>(internal_->estimate.pit.data(), internal_->measurements));
+    draw_pit(seed, samples, said.pit_width, Eigen::Map<Eigen::VectorXd>(internal_->estimate.pit.data(), measurements));
   ++internal_->samples;
-  return internal_->estimate;
+  return estimate;
 }
 
 const Estimate& BankFilter::estimate() const { return internal_->estimate; }
 
 std::vector<Forecast> BankFilter::forecast(const Matrix& inputs, std::ptrdiff_t steps) const {
-  std::vector<Forecast> result;
-  for (const StateForecast& ahead : internal_->filter.forecast(view(inputs), steps))
-    result.push_back({to_vector(ahead.state), to_matrix(ahead.covariance), to_vector(ahead.mode_probability)});
-  return result;
+  return internal_->filter.forecast(view(inputs), steps);
 }
 
 std::vector<double> BankFilter::snapshot() const {

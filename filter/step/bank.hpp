@@ -14,14 +14,12 @@
 
 namespace modebank {
 
-/// Row-stochastic matrix of mode transitions, T(i, j) = P(mode j next | mode i now). It has its own type, because
-/// mixing weights (whose columns sum to one) must not be passed instead. Checked once, at construction.
+/// T(i, j) = P(mode j next | mode i now). A type of its own: mixing weights, whose columns sum to one, are none.
 class TransitionMatrix {
  public:
   TransitionMatrix() : matrix_(Eigen::MatrixXd::Identity(1, 1)) {}
   /// Throws std::invalid_argument unless the matrix is square and its rows are nonnegative with sum one within 1e-9.
-  /// Rows are then normalised if their sum differs from one by more than rounding. So construction from matrix() keeps
-  /// every bit.
+  /// Normalises the rows; construction from matrix() keeps every bit.
   explicit TransitionMatrix(Eigen::MatrixXd row_stochastic);
   /// `stay` on the diagonal; the other entries of a row are equal. K = 1 gives 1.
   static TransitionMatrix sticky(Eigen::Index modes, double stay);
@@ -33,9 +31,8 @@ class TransitionMatrix {
   Eigen::MatrixXd matrix_;
 };
 
-/// State-dependent transition probabilities, a multinomial logit (McFadden 1974; StateDependentTransition in
-/// modebank/filter/bank.hpp). z[k] = (x[k], v[k]) is known before the measurement of sample k + 1. A constant added to
-/// a column of the weights has no effect.
+/// filter::StateDependentTransition, a multinomial logit (McFadden 1974). z[k] = (x[k], v[k]) is known before the
+/// measurement of sample k + 1. A constant added to a column of the weights has no effect.
 struct TransitionLogit {
   Eigen::MatrixXd weights = {};    ///< K x d, d = n + acting inputs [1 / unit of z]; if empty, T holds for every z
   Eigen::VectorXd reference = {};  ///< d, the value of z for which T holds
@@ -45,20 +42,18 @@ struct TransitionLogit {
 
 /// Workspace for the transition probabilities of a step, sized once.
 struct TransitionWorkspace {
-  TransitionWorkspace(Eigen::Index modes, const TransitionLogit& logit)
-      : offset(logit.empty() ? Eigen::VectorXd() : Eigen::VectorXd(logit.weights * logit.reference)) {
+  Eigen::MatrixXd T;               ///< K x K; each row sums to one
+  Eigen::VectorXd factor, offset;  ///< K; offset = weights * reference
+
+  TransitionWorkspace(Eigen::Index modes, const TransitionLogit& logit) {
     if (logit.empty()) return;
     T.resize(modes, modes);
     factor.resize(modes);
+    offset = logit.weights * logit.reference;
   }
-
-  Eigen::MatrixXd T;       ///< K x K; each row sums to one
-  Eigen::VectorXd factor;  ///< K
-  Eigen::VectorXd offset;  ///< K, the product of weights and reference
 };
 
-/// Upper limit of the difference of log odds. Larger differences are practically certain. The limit keeps every row of
-/// T possible.
+/// Upper limit of the difference of log odds, which keeps every row of T possible. Larger ones are practically certain.
 inline constexpr double largest_log_odds = 200.0;
 
 /// The probabilities at (x, v). The result is T if x or v is not finite. Does not allocate.
@@ -66,26 +61,23 @@ template <class X, class V>
 const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionLogit& logit, const X& x, const V& v,
                                      TransitionWorkspace& at) {
   if (logit.empty()) return T;
-  const Eigen::Index K = T.rows(), n = x.size();
   at.factor = -at.offset;
-  for (Eigen::Index a = 0; a < n; ++a) at.factor += logit.weights.col(a) * x(a);
-  for (Eigen::Index a = 0; a < v.size(); ++a) at.factor += logit.weights.col(n + a) * v(a);
+  for (Eigen::Index a = 0; a < x.size(); ++a) at.factor += logit.weights.col(a) * x(a);
+  for (Eigen::Index a = 0; a < v.size(); ++a) at.factor += logit.weights.col(x.size() + a) * v(a);
   if (!at.factor.allFinite()) return T;
   at.factor = (at.factor.array() - at.factor.maxCoeff()).max(-largest_log_odds).exp();
-  for (Eigen::Index i = 0; i < K; ++i) {
+  for (Eigen::Index i = 0; i < T.rows(); ++i) {
     double sum = 0.0;
-    for (Eigen::Index j = 0; j < K; ++j) sum += at.T(i, j) = T(i, j) * at.factor(j);
-    for (Eigen::Index j = 0; j < K; ++j) at.T(i, j) /= sum;
+    for (Eigen::Index j = 0; j < T.cols(); ++j) sum += at.T(i, j) = T(i, j) * at.factor(j);
+    at.T.row(i) /= sum;
   }
   return at.T;
 }
 
-/// One factor on the process noise of every mode (NoiseByState in modebank/filter/bank.hpp). With its limits, 0.2 to 5,
-/// a forecast remains usable if inputs differ from those of the training runs. Without limits, a factor learned on DART
-/// lost 54 nats per sample on other runs.
+/// filter::NoiseByState, one factor for all modes. Its limits, 0.2 to 5, keep a forecast usable if inputs differ from
+/// those of the training runs: without them, a factor learned on DART lost 54 nats per sample on other runs.
 struct NoiseFactor {
-  Eigen::MatrixXd directions;  ///< d x (n + m): directions on which the noise depends. Each is scaled so that
-                               ///< directions_i [z; v] has a root mean square of 1 on the training runs
+  Eigen::MatrixXd directions;  ///< d x (n + m), directions_i [z; v] has a root mean square of 1 on the training runs
   Eigen::VectorXd weights;     ///< d
   double offset = 0.0;         ///< with this offset, log f has mean zero on the training runs
 
@@ -111,8 +103,7 @@ struct NoiseFactor {
   }
 };
 
-/// One mode of motion in state space: x[k+1] = x + A x + B u + c + w, w ~ N(0, Q). With lags, z and v of
-/// LinearStructure replace x and u.
+/// filter::Mode, with what is known about its numbers.
 struct Mode {
   LinearModel model;                     ///< A (n x n), B (n x m), c (n)
   Eigen::MatrixXd Q;                     ///< n x n process noise covariance per step
@@ -121,15 +112,12 @@ struct Mode {
   double weight = 1.0;                   ///< share of the windows that belong to this mode
 
   /// Parameters of a motion model and their standard errors. The fields above then belong to its linearisation.
-  Eigen::VectorXd motion_theta = {};
-  Eigen::VectorXd motion_standard_error = {};
+  Eigen::VectorXd motion_theta = {}, motion_standard_error = {};
   Eigen::MatrixXd Q_standard_error = {};  ///< n x n, standard errors of Q; only for refined banks, else empty
 
-  /// Coefficients of the terms, measured states x T; empty without terms. Terms multiplied by these coefficients are
-  /// added to x[k+1].
-  Eigen::MatrixXd bend = {};
-  Eigen::MatrixXd bend_standard_error = {};  ///< their standard errors, in the same order; empty without terms
-  EstimatedStepResponse response = {};       ///< response to steps of the inputs; empty but for single models
+  /// Coefficients of the terms that are added to x[k+1], and their standard errors, measured states x T; may be empty.
+  Eigen::MatrixXd bend = {}, bend_standard_error = {};
+  EstimatedStepResponse response = {};  ///< response to steps of the inputs; empty but for single models
 };
 
 /// Drift of the coefficients of scaled regressors, in units of the noise variance v (method: section 6).
@@ -143,24 +131,21 @@ struct DriftRates {
 
 /// Log score of the settings that were chosen on a grid, on the training runs.
 struct GridTuning {
-  double log_score = 0.0;    ///< log score of the training runs [nats/sample]
+  double log_score = 0.0;    ///< [nats/sample]
   Eigen::Index samples = 0;  ///< number of scored training samples
 };
 
-/// Drift of the coefficients of the competitor `drifting` within a run (DriftingFilter).
+/// filter::CoefficientDrift, of the competitor `drifting` (DriftingFilter).
 struct BankDrift {
   DriftRates rates = {};
-  Eigen::VectorXd scale = {};            ///< r, root mean square of each regressor, positive; empty without drift
-  Wandering wandering = Wandering::all;  ///< which coefficients drift
-  GridTuning tuning = {};                ///< how the competitor `drifting` was tuned
+  Eigen::VectorXd scale = {};  ///< r, root mean square of each regressor, positive; empty without drift
+  GridTuning tuning = {};      ///< how the competitor `drifting` was tuned
 
   bool empty() const { return scale.size() == 0; }
 };
 
-/// Noise of one motion. The variance follows each output separately (method: section 6, `drifting`). e is a prediction
-/// error with Student's t distribution of variance v (s + h'Ph). P is the covariance of the coefficients divided by v.
-/// s is the noise level: 1, or one of J levels between which the noise switches by a Markov chain. At a start, v is the
-/// diagonal of Q. Then, with the probabilities mu of the levels after the sample,
+/// filter::RunningNoise. e is a prediction error with Student's t distribution of variance v (s + h'Ph). P is the
+/// covariance of the coefficients divided by v, s the noise level. With the levels' probabilities mu after a sample,
 ///   v <- max(lam v + (1 - lam) sum_j mu_j e_j^2 / (s_j + h'P_j h), floor).
 /// Given the past and the level, outputs are independent.
 struct RunningNoise {
@@ -168,8 +153,7 @@ struct RunningNoise {
   double nu = 0.0;             ///< degrees of freedom, above 2; 0 for a normal distribution
   Eigen::VectorXd floor = {};  ///< n, smallest value of v; if empty, the noise is Q and constant
 
-  /// Horizons in samples, ascending from 2, and for each horizon the factor on the first-order variance. One sample
-  /// ahead the factor is 1, because the prediction is that of the filter.
+  /// Horizons in samples, ascending from 2, and for each horizon the factor on the first-order variance.
   std::vector<std::pair<Eigen::Index, double>> horizon_factor = {};
 
   Eigen::MatrixXd level = {};      ///< n x J, variance of each level in units of v; if empty, one level of 1
@@ -193,28 +177,23 @@ struct Bank {
   std::vector<Mode> modes;  ///< K >= 1
   Eigen::MatrixXd C;        ///< n_y x n
   Eigen::MatrixXd R;        ///< n_y x n_y
-
-  /// n_y, spacing q of measured values [state unit]. The filter's R is then at least q^2 / 12, and the score of a value
-  /// is the mass of its interval. 0 marks a continuous signal; an empty vector means that all are continuous.
+  /// n_y, spacing q of measured values [state unit]; 0 or empty: continuous. The filter's R is then at least q^2 / 12,
+  /// and the score of a value is the mass of its interval.
   Eigen::VectorXd quantum = {};
   TransitionMatrix transition;          ///< K x K
-  TransitionLogit transition_logit;     ///< dependence of the transition matrix on state and input; empty if it is
-                                        ///< constant
+  TransitionLogit transition_logit;     ///< dependence of the transitions on state and input; empty: constant
   Eigen::VectorXd initial_probability;  ///< K
-  std::vector<std::string> state_names;
-  std::vector<std::string> input_names;
+  std::vector<std::string> state_names, input_names;
   double dt_s = 0.0;  ///< median sample period of the training data
   std::vector<ScreenedMode> screened;
   std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear models
-  BankDrift drift;                                ///< drift of a single mode with running noise; empty without drift
-  MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes; empty without terms
-  NoiseFactor noise_factor = {};                  ///< factor on every Q that depends on state and input; empty without
-                                                  ///< a factor
-  RunningNoise running_noise = {};   ///< running noise of a single mode that drifts (the competitor `drifting`); if
-                                     ///< empty, the noise is Q
-  Eigen::MatrixXd R_standard_error;  ///< n_y x n_y, standard errors of R; empty unless R was estimated with the bank
-  Eigen::MatrixXd transition_standard_error;  ///< K x K, standard errors of T; only for refined banks, else empty
-  Eigen::MatrixXd transition_weight_error;    ///< K x d standard errors of the logit's weights; empty if unknown
+  BankDrift drift;                                ///< drift of a single mode with running noise; empty: none
+  MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes
+  NoiseFactor noise_factor = {};                  ///< factor on every Q that depends on state and input
+  RunningNoise running_noise = {};                ///< noise of a single mode that drifts; empty: the noise is Q
+  Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
+  Eigen::MatrixXd transition_standard_error;      ///< K x K, standard errors of T; only for refined banks, else empty
+  Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty if unknown
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
@@ -232,21 +211,17 @@ struct Bank {
 /// measured states.
 Bank one_mode_bank(const LinearStructure& structure, const Eigen::VectorXd& theta, const Eigen::VectorXd& variance);
 
-/// Whether the bank has several modes with the same theta. Such modes differ only in noise.
-bool has_one_theta(const Bank& bank);
-
-/// Throws std::invalid_argument with the name of the first invalid part. A part is invalid if its size does not fit the
-/// other parts, a number is not finite, a variance is negative, or probabilities are invalid.
-void validate(const Bank& bank);
+/// Throws std::invalid_argument with the name of the first part whose size does not fit the other parts, or whose
+/// numbers are none that a filter can use. Returns the bank.
+const Bank& validate(const Bank& bank);
 /// Checks the sizes only. Candidates of an optimiser may have extreme numbers.
 void check_sizes(const Bank& bank);
 
-/// Start of a filter from its first measurement: x[0] = gain y[0]. With lags, the first measurements of all samples in
-/// z are used; the gain is I, and each sample has the covariance R.
+/// Start of a filter from its first measurement: x[0] = gain y[0]; with lags, from those of all samples in z, each of
+/// which has the covariance R.
 struct StartMoments {
   Eigen::MatrixXd gain;        ///< n x n_y, the pseudo-inverse C+; n x n with lagged states
-  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure. For C =
-                               ///< I it is R
+  Eigen::MatrixXd covariance;  ///< n x n, C+ R C+' plus a wide variance in directions that C does not measure
 };
 
 StartMoments start_moments(const Bank& bank);

@@ -8,9 +8,11 @@
 #include <variant>
 
 #include "filter/step/drifting.hpp"
-#include "filter/step/imm_filter.hpp"
+#include "filter/step/imm.hpp"
 #include "ident/base/distributions.hpp"
+#include "ident/base/not_a_number.hpp"
 #include "ident/base/seed.hpp"
+#include "modebank/base/eigen.hpp"
 
 namespace modebank {
 
@@ -26,10 +28,7 @@ struct BankFilter::Equations {
 
 namespace {
 
-const Bank& validated(const Bank& bank) {
-  validate(bank);
-  return bank;
-}
+constexpr double snapshot_format = 6.0;
 
 /// Calls f(filter) with the equations of the bank, which have not started.
 template <class F>
@@ -37,13 +36,6 @@ auto with_equations(const Bank& bank, const FilterOptions& options, F f) {
   if (!bank.running_noise.empty()) return f(DriftingFilter(bank));
   return with_sizes(bank.structure.dimension(), bank.C.rows(),
                     [&]<int N, int NY>() { return f(ImmFilter<N, NY>(bank, options)); });
-}
-
-/// Advances from the previous sample to the prediction of the next one, which is `steps` model steps later.
-template <class Filter>
-void advance(Filter& filter, const Vector& inputs, Index steps) {
-  for (Index i = 1; i < steps; ++i) filter.step(inputs);
-  filter.predict(inputs);
 }
 
 }  // namespace
@@ -56,8 +48,25 @@ void take_measured(const FilterEstimate& from, FilterEstimate& to) {
   to.steps = from.steps;
 }
 
+void CombinedInnovation::observe(const Eigen::VectorXd& predicted, const Vector& y, FilterEstimate& estimate) {
+  constexpr double largest_nis = 1e300;
+  covariance_ = estimate.innovation_covariance;
+  residual_ = estimate.innovation = y - predicted;
+  for (Index i = 0; i < y.size(); ++i)
+    if (is_missing(y(i))) {
+      detach(covariance_, i);
+      residual_(i) = 0.0;
+      estimate.innovation(i) = not_a_number;
+    }
+  cholesky_.factorise(covariance_);
+  cholesky_.decorrelate(residual_);
+  estimate.nis = cholesky_.squared_distance(residual_);
+  if (!(estimate.nis < largest_nis)) estimate.nis = largest_nis;
+  if (missing_entries(y) == y.size()) estimate.nis = not_a_number;
+}
+
 BankFilter::BankFilter(const Bank& bank, const FilterOptions& options)
-    : feed_(validated(bank)),
+    : feed_(validate(bank)),
       earliest_input_(bank.structure.input_delay.earliest()),
       C_(bank.C),
       initial_probability_(bank.initial_probability),
@@ -73,7 +82,7 @@ BankFilter::BankFilter(BankFilter&&) noexcept = default;
 BankFilter& BankFilter::operator=(BankFilter&&) noexcept = default;
 
 const FilterEstimate& BankFilter::step(double time_s, const Vector& input, const Vector& measurement) {
-  feed_.push(time_s, input, measurement);
+  feed_.push(time_s, input.data(), measurement.data());
   if (feed_.steps() > longest_gap_steps) started_ = false;
   if (!started_ && !feed_.can_start()) {
     wait();
@@ -103,18 +112,16 @@ void BankFilter::restart() {
 
 template <class Filter>
 void BankFilter::take(Filter& filter, const Vector& measurement) {
-  advance(filter, feed_.inputs(), feed_.steps());
+  for (Index i = 1; i < feed_.steps(); ++i) filter.step(feed_.inputs());
+  filter.predict(feed_.inputs());
   filter.combine(estimate_.prediction, estimate_.innovation_covariance);
   estimate_.mode_probability_predicted = filter.predicted_probability();
   estimate_.steps = feed_.steps();
   estimate_.log_density = filter.update(measurement);
-  if (std::isnan(estimate_.log_density)) {
-    clear_scores();
-  } else {
-    small::multiply(predicted_, C_, estimate_.prediction);
-    innovation_.observe(predicted_, measurement, estimate_);
-    filter.transform(measurement, estimate_.pit, estimate_.pit_width, estimate_.log_density);
-  }
+  if (std::isnan(estimate_.log_density)) return clear_scores();
+  small::multiply(predicted_, C_, estimate_.prediction);
+  innovation_.observe(predicted_, measurement, estimate_);
+  filter.transform(measurement, estimate_.pit, estimate_.pit_width, estimate_.log_density);
 }
 
 /// No prediction was made for this sample.
@@ -140,134 +147,93 @@ void BankFilter::wait() {
   estimate_.mode_probability = estimate_.mode_probability_predicted = initial_probability_;
 }
 
-std::vector<StateForecast> BankFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) const {
-  const Index n = estimate_.state.size(), m = feed_.channels();
+std::vector<filter::Forecast> BankFilter::forecast(const Eigen::Ref<const Eigen::MatrixXd>& inputs, Index steps) const {
+  const Index n = C_.cols(), m = feed_.channels(), needed = std::max<Index>(steps - earliest_input_, 0);
   if (steps < 1) throw std::invalid_argument("steps: a forecast needs at least 1 step, not " + std::to_string(steps));
-  if (m > 0 && (inputs.rows() != m || inputs.cols() < steps - earliest_input_))
+  if (m > 0 && (inputs.rows() != m || inputs.cols() < needed))
     throw std::invalid_argument("inputs: a forecast of " + std::to_string(steps) + " steps takes " + std::to_string(m) +
-                                " inputs of " + std::to_string(std::max<Index>(steps - earliest_input_, 0)) +
-                                " samples or more, not " + std::to_string(inputs.rows()) + " of " +
-                                std::to_string(inputs.cols()));
+                                " inputs of " + std::to_string(needed) + " samples or more, not " +
+                                std::to_string(inputs.rows()) + " of " + std::to_string(inputs.cols()));
   if (!inputs.allFinite()) throw std::invalid_argument("inputs: planned inputs must be finite");
-  std::vector<StateForecast> result(static_cast<std::size_t>(steps),
-                                    {Eigen::VectorXd::Constant(n, not_a_number),
-                                     Eigen::MatrixXd::Constant(n, n, not_a_number), initial_probability_});
+  std::vector<filter::Forecast> result(
+      steps, {std::vector<double>(n, not_a_number), Matrix(n, n, not_a_number), to_vector(initial_probability_)});
   if (!started_) return result;
-  const Eigen::VectorXd none = Eigen::VectorXd::Constant(C_.rows(), not_a_number),
-                        held = Eigen::VectorXd::Constant(m, not_a_number);
+  const std::vector<double> none(C_.rows(), not_a_number), held(m, not_a_number);
   SampleFeed feed = feed_;
   std::visit(
       [&](const auto& filter) {
         auto ahead = filter.forecast();
+        Eigen::VectorXd state;
+        Eigen::MatrixXd covariance;
         for (Index i = 0; i < steps; ++i) {
-          feed.push(not_a_number, m > 0 && i < inputs.cols() ? Eigen::VectorXd(inputs.col(i)) : held, none);
+          const bool given = m > 0 && i < inputs.cols();
+          feed.push(not_a_number, given ? inputs.col(i).data() : held.data(), none.data());
           ahead.step(feed.inputs());
-          StateForecast& one = result[static_cast<std::size_t>(i)];
-          ahead.merge(one.state, one.covariance);
-          one.mode_probability = ahead.predicted_probability();
+          ahead.merge(state, covariance);
+          result[i] = {to_vector(state), to_matrix(covariance), to_vector(ahead.predicted_probability())};
         }
       },
       equations_->filter);
   return result;
 }
 
-namespace {
-
-constexpr double snapshot_format = 5.0;
-
-/// Writes the parts of a state to a list of numbers, or reads them back. The sizes of a matrix precede its entries.
-struct Numbers {
-  std::vector<double>* written = nullptr;  ///< null: reads
-  std::span<const double> left = {};
-
-  template <class... Part>
-  void exchange(std::tuple<Part&...> parts) {
-    std::apply([&](auto&... part) { ((*this)(part), ...); }, parts);
-  }
-  void operator()(double& value) {
-    if (written)
-      written->push_back(value);
-    else
-      value = next();
-  }
-  void operator()(Index& value) {
-    constexpr double most = 9007199254740992.0;  // 2^53
-    auto number = static_cast<double>(value);
-    (*this)(number);
-    if (!(number >= 0.0 && number <= most && number == std::floor(number))) refuse();
-    value = static_cast<Index>(number);
-  }
-  template <class Derived>
-  void operator()(Eigen::PlainObjectBase<Derived>& matrix) {
-    Index rows = matrix.rows(), cols = matrix.cols();
-    (*this)(rows);
-    (*this)(cols);
-    if (rows != matrix.rows() || cols != matrix.cols()) refuse();
-    for (double& value : matrix.reshaped()) (*this)(value);
-  }
-  template <class Part>
-  void operator()(std::vector<Part>& parts) {
-    for (Part& part : parts) (*this)(part);
-  }
-  template <int N>
-  void operator()(Gaussian<N>& gaussian) {
-    (*this)(gaussian.mean);
-    (*this)(gaussian.covariance);
-  }
-  double next() {
-    if (left.empty()) refuse();
-    const double value = left.front();
-    left = left.subspan(1);
-    return value;
-  }
-  [[noreturn]] static void refuse() {
-    throw std::invalid_argument("the snapshot is damaged, or that of a filter with other sizes");
-  }
-};
-
-}  // namespace
-
+/// The numbers of the state follow the format and `started`, each part after its size.
 std::vector<double> BankFilter::snapshot() const {
   std::vector<double> numbers{snapshot_format, started_ ? 1.0 : 0.0};
-  Numbers write{&numbers};
-  Equations equations = *equations_;
+  const auto write = [&](const std::vector<SnapshotPart>& parts) {
+    for (const SnapshotPart& part : parts) {
+      numbers.push_back(static_cast<double>(part.size()));
+      numbers.insert(numbers.end(), part.begin(), part.end());
+    }
+  };
+  Equations equations = *equations_;  // parts can be written to, so these are those of copies
   SampleFeed feed = feed_;
-  std::visit([&](auto& filter) { write.exchange(filter.parts()); }, equations.filter);
-  write.exchange(feed.parts());
+  std::visit([&](auto& filter) { write(filter.parts()); }, equations.filter);
+  write(feed.parts());
   return numbers;
 }
 
-void BankFilter::restore(std::span<const double> snapshot) {
-  Numbers read{nullptr, snapshot};
-  if (read.next() != snapshot_format)
+void BankFilter::restore(std::span<const double> left) {
+  const auto require = [](bool fits) {
+    if (!fits) throw std::invalid_argument("the snapshot is damaged, or that of a filter with other sizes");
+  };
+  const auto read = [&](std::vector<SnapshotPart> parts) {
+    for (SnapshotPart& part : parts) {
+      require(std::ssize(left) > part.size() && left[0] == static_cast<double>(part.size()));
+      part = Eigen::Map<const Eigen::VectorXd>(left.data() + 1, part.size());
+      left = left.subspan(part.size() + 1);
+    }
+  };
+  require(left.size() > 2 && (left[1] == 0.0 || left[1] == 1.0));
+  if (left[0] != snapshot_format)
     throw std::invalid_argument("the snapshot comes from another version of the library, or not from a filter");
-  const double started = read.next();
-  if (started != 0.0 && started != 1.0) Numbers::refuse();
+  const bool started = left[1] == 1.0;
+  left = left.subspan(2);
   Equations equations = *equations_;
   SampleFeed feed = feed_;
   std::visit(
       [&](auto& filter) {
-        read.exchange(filter.parts());
+        read(filter.parts());
         filter.settle();
       },
       equations.filter);
-  read.exchange(feed.parts());
+  read(feed.parts());
   feed.settle();
-  if (!read.left.empty()) Numbers::refuse();
+  require(left.empty());
   *equations_ = std::move(equations);
   feed_ = feed;
-  started_ = started == 1.0;
+  started_ = started;
 }
 
 Eigen::VectorXd log_densities(const Bank& bank, const Trajectory& run, const FilterOptions& options) {
   check_run(bank, run);
   Eigen::VectorXd result = Eigen::VectorXd::Constant(run.samples(), not_a_number);
+  const RunInstants moments(bank, run);
   with_equations(bank, options, [&](auto filter) {
-    for_each_sample(bank, run, [&](const SampleFeed& feed, Index k, bool starts) {
-      if (starts) return filter.start(feed.start());
-      advance(filter, feed.inputs(), feed.steps());
-      result(k) = filter.update(run.state.col(k));
-    });
+    for (Index t = 0; t < moments.count(); ++t) {
+      const double log_density = follow(moments, t, run, filter);
+      if (const Index k = moments.instants[t].sample; k >= 0) result(k) = log_density;
+    }
   });
   return result;
 }
@@ -276,8 +242,7 @@ std::uint64_t pit_seed(std::uint64_t seed, std::string_view run) {
   return derive_seed(seed, "pit of " + std::string(run));
 }
 
-void draw_pit(std::uint64_t of_run, Index sample, const Eigen::Ref<const Eigen::VectorXd>& width,
-              Eigen::Ref<Eigen::VectorXd> pit) {
+void draw_pit(std::uint64_t of_run, Index sample, const Vector& width, Eigen::Ref<Eigen::VectorXd> pit) {
   std::mt19937_64 generator = make_generator(of_run, "pit", static_cast<std::uint64_t>(sample));
   for (Index i = 0; i < pit.size(); ++i) {
     const double draw = std::ldexp(static_cast<double>(generator() >> 11U), -53);
@@ -287,16 +252,12 @@ void draw_pit(std::uint64_t of_run, Index sample, const Eigen::Ref<const Eigen::
 
 void judge_live(const Eigen::MatrixXd& C, const FilterEstimate& estimate, LiveVerdict& verdict) {
   static const double interval_quantile = normal_quantile(0.975);  // normal quantile for 95 % intervals
-  verdict.predicted.noalias() = C.lazyProduct(estimate.prediction);
-  verdict.lower = verdict.upper = verdict.predicted;
-  verdict.alarm = false;
   constexpr double alarm_tail = 0.0005;  // tail probability on each side; a correct model has one such sample in 1000
-  for (Index i = 0; i < C.rows(); ++i) {
-    const double half = interval_quantile * std::sqrt(estimate.innovation_covariance(i, i)), pit = estimate.pit(i);
-    verdict.lower(i) -= half;
-    verdict.upper(i) += half;
-    if (pit < alarm_tail || pit > 1.0 - alarm_tail) verdict.alarm = true;  // false for NaN (a missing signal)
-  }
+  verdict.predicted.noalias() = C.lazyProduct(estimate.prediction);
+  verdict.upper = interval_quantile * estimate.innovation_covariance.diagonal().cwiseSqrt();
+  verdict.lower = verdict.predicted - verdict.upper;
+  verdict.upper += verdict.predicted;
+  verdict.alarm = ((estimate.pit.array() - 0.5).abs() > 0.5 - alarm_tail).any();  // false for NaN (a missing signal)
 }
 
 }  // namespace modebank

@@ -10,14 +10,12 @@ namespace modebank {
 /// Name of the combination of several filters in archives.
 inline constexpr const char* combined_name = "combined";
 
-/// A bank with the sizes of the combined estimates. It has the modes of `bank` (the first filter) and only its measured
-/// states, because other filters may have other lags. It is used for scores and cannot be stepped.
+/// The bank of the first filter with only its measured states, because other filters may have other lags. For scores.
 Bank combined_frame(const Bank& bank);
 
-/// Combines several filters of the same measurements into one filter. Predictions are weighted by past success within
-/// the run. Prediction, state and covariances are those of the mixture, for the measured states. With one signal the
-/// transform is that of the mixture. With several signals it is mixed by the joint weights, which is exact for the
-/// first signal. Modes are those of the first filter.
+/// Combines several filters of the same measurements into one, by ForecastWeights. Prediction, state and covariances
+/// are those of the mixture, for the measured states. With several signals the transform is mixed by the joint weights,
+/// which is exact for the first signal. Modes are those of the first filter.
 class CombinedFilter {
  public:
   /// `start`: weights at the start and after every gap.

@@ -8,44 +8,31 @@
 /// arithmetic stable for any input.
 namespace modebank {
 
-/// Lower bound of mode probabilities after a measurement, so that every mode can recover. Probabilities are then
-/// renormalised.
+/// Lower bound of mode probabilities after a measurement, before they are renormalised, so that every mode can recover.
 inline constexpr double mode_probability_floor = 1e-12;
-
 /// A mode with a smaller probability before a measurement is impossible (T forbids it). The filter skips such a mode.
 inline constexpr double impossible_probability = 1e-100;
-
-/// Upper bound of variances in a diverging prediction, so that squares stay finite. Means are bounded by the square
-/// root of this bound.
-inline constexpr double largest_variance = 1e60;
-inline constexpr double largest_mean = 1e30;
-
-/// Smallest variance. It is used if S = 0. The standard deviation is 1e-20 in the signal's unit.
+/// Upper bounds of variances and means in a diverging prediction, so that squares stay finite.
+inline constexpr double largest_variance = 1e60, largest_mean = 1e30;
+/// Smallest variance, used if S = 0. The standard deviation is 1e-20 in the signal's unit.
 inline constexpr double least_variance = 1e-40;
+/// Smallest pivot of a covariance, as a share of its diagonal entry. Smaller pivots are rounding errors.
+inline constexpr double relative_pivot_floor = 1e-14;
 
-/// Lower bound of log densities.
+/// Lower bound of log densities. NaN, from an overflow, has this value, too: a filter that failed at a sample is not
+/// one that did not measure it.
 inline constexpr double lowest_log_density = -1e300;
-
-/// Log density of a measurement. NaN, from an overflow, has the lowest value, too: a filter that failed at a sample is
-/// not one that did not measure it.
 inline double measured_density(double value) { return value > lowest_log_density ? value : lowest_log_density; }
 
 /// A measurement counts as missing if it is NaN, infinite, or at least this large.
 inline constexpr double largest_measurement = 1e30;
-
 inline bool is_missing(double y) { return !(std::abs(y) < largest_measurement); }
 
 /// Number of missing entries in a measurement.
 template <class Y>
-auto missing_entries(const Y& y) {
-  decltype(y.size()) count = 0;
-  for (decltype(y.size()) i = 0; i < y.size(); ++i) count += is_missing(y(i)) ? 1 : 0;
-  return count;
+Eigen::Index missing_entries(const Y& y) {
+  return y.size() - (y.array().abs() < largest_measurement).count();
 }
-
-/// Smallest pivot of a covariance, as a share of its diagonal entry. Smaller pivots are rounding errors. Raising a
-/// pivot to this bound is the same as adding the difference to the diagonal.
-inline constexpr double relative_pivot_floor = 1e-14;
 
 /// Eigen sums in different orders for fixed and dynamic sizes. Here the order of summation is fixed, so both give the
 /// same bits.
@@ -158,41 +145,32 @@ struct Gaussian {
   }
 };
 
+/// Sets the correlations to zero, and each variance to variance(i).
+template <class Matrix, class Variance>
+void uncorrelate(Matrix&& P, Variance variance) {
+  for (Eigen::Index j = 0; j < P.cols(); ++j)
+    for (Eigen::Index i = 0; i < P.rows(); ++i) P(i, j) = i == j ? variance(i) : 0.0;
+}
+
 /// Repairs a prediction. Diverging values are scaled down. If variances differ by more than double precision, rounding
 /// can make a covariance indefinite. The variances then stay, and the correlations are set to zero.
 template <int N>
 void make_usable(Gaussian<N>& g) {
-  double largest = g.covariance(0, 0), least = largest, mean = std::abs(g.mean(0));
-  for (Eigen::Index i = 1; i < g.mean.size(); ++i) {
-    largest = std::max(largest, g.covariance(i, i));
-    least = std::min(least, g.covariance(i, i));
-    mean = std::max(mean, std::abs(g.mean(i)));
-  }
-  if (least < 0.0) {
-    for (Eigen::Index j = 0; j < g.mean.size(); ++j)
-      for (Eigen::Index i = 0; i < g.mean.size(); ++i) g.covariance(i, j) = i == j ? std::abs(g.covariance(i, j)) : 0.0;
-    largest = std::max(largest, -least);
-  }
+  const auto variances = g.covariance.diagonal();
+  if (variances.minCoeff() < 0.0) uncorrelate(g.covariance, [&](Eigen::Index i) { return std::abs(variances(i)); });
+  const double largest = variances.maxCoeff(), mean = g.mean.cwiseAbs().maxCoeff();
   if (largest > largest_variance) g.covariance *= largest_variance / largest;
   if (mean > largest_mean) g.mean *= largest_mean / mean;
 }
 
-/// Bounds the variances after a measurement, because a measurement cannot enlarge them. Rounding can make a variance
-/// negative if S is near singular (R = 0 and singular Q). The variances are then kept within the bounds, and the
-/// correlations are set to zero.
+/// Rounding can make a variance negative if S is near singular (R = 0 and singular Q). The variances are then kept
+/// within those before the measurement, which cannot enlarge them, and the correlations are set to zero.
 template <int N>
 void bound_variances(const Gaussian<N>& predicted, Gaussian<N>& posterior) {
   if ((posterior.covariance.diagonal().array() >= 0.0).all()) return;
-  for (Eigen::Index j = 0; j < posterior.mean.size(); ++j)
-    for (Eigen::Index i = 0; i < posterior.mean.size(); ++i)
-      posterior.covariance(i, j) =
-          i == j ? std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i))) : 0.0;
-}
-
-/// Whether every number is finite. Tests the sum of the numbers (terms are far below overflow).
-template <int N>
-bool is_finite(const Gaussian<N>& g) {
-  return std::isfinite(g.mean.sum() + g.covariance.sum());
+  uncorrelate(posterior.covariance, [&](Eigen::Index i) {
+    return std::clamp(posterior.covariance(i, i), 0.0, std::max(0.0, predicted.covariance(i, i)));
+  });
 }
 
 }  // namespace modebank

@@ -4,89 +4,42 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <span>
+#include <stdexcept>
 #include <type_traits>
 #include <vector>
 
 #include "filter/step/gaussian.hpp"
 #include "filter/step/kalman.hpp"
+#include "filter/step/noise_density.hpp"
+#include "filter/step/samples.hpp"
+#include "ident/base/covariance.hpp"
 #include "ident/base/log_two_pi.hpp"
+#include "ident/base/not_a_number.hpp"
 
 /// The interacting multiple model filter: Blom & Bar-Shalom 1988, "The interacting multiple model algorithm for systems
 /// with Markovian switching coefficients", IEEE Transactions on Automatic Control 33(8). Equation numbers are those of
 /// Bar-Shalom, Li & Kirubarajan 2001, "Estimation with Applications to Tracking and Navigation", section 11.6.6. Its
 /// five steps are:
 ///   1  mixing probabilities    mixing_weights
-///   2  mixing                  mix
-///   3  mode-matched filtering  predict, take_in (kalman.hpp)
-///   4  mode probabilities      take_in, bayes, floor_probabilities
+///   2  mixing                  ImmFilter::mix
+///   3  mode-matched filtering  KalmanStep (kalman.hpp)
+///   4  mode probabilities      bayes, floor_probabilities
 ///   5  combination             merge
-/// The book leaves some cases open: modes that T forbids, likelihoods that underflow, missing signals. Comments below
-/// state how each is handled. The functions at the end combine the steps to those of FilterVariant. Only FilterState
-/// persists between calls. Nothing is allocated once FilterState and FilterStep exist. Call `start` first. For each
-/// sample call `predict`, then `update`, or `skip_measurement` if no signal was measured.
+/// Comments below state what the book leaves open: modes that T forbids, likelihoods that underflow, missing signals.
 namespace modebank {
 
-/// The state of a filter: one Gaussian per mode, and the mode probabilities.
+/// The state of a filter.
 template <int N>
 struct FilterState {
   std::vector<Gaussian<N>> modes;    ///< K
   Eigen::VectorXd mode_probability;  ///< K, mu
 };
 
-/// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j. Unlike in a TransitionMatrix, the columns
-/// sum to one. Rows are contiguous: merge computes several columns at a time.
+/// Column j holds mu_{i|j}, the weight of each mode i in the start of mode j; columns sum to one. Rows are contiguous:
+/// merge computes several columns at a time.
 using MixingWeights = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;  // K x K
-
-/// Intermediate results of one step, sized once.
-template <int N, int NY>
-struct FilterStep {
-  Eigen::VectorXd predicted_probability;  ///< K mode probabilities before the measurement (c)
-  std::vector<KalmanStep<N, NY>> kalman;  ///< K
-  std::vector<Gaussian<N>> mixed;         ///< K, start of each mode's prediction
-  MixingWeights mixing;
-  TransitionWorkspace transition;
-  Eigen::VectorXd log_likelihood;          ///< K
-  PartialSensor<N, NY> partial;            ///< sensor of the last measurement; `missing` is 0 if it was complete
-  Eigen::Matrix<double, N, 1> mean;        ///< of the predicted mixture
-  Eigen::Matrix<double, NY, NY> spread;    ///< of the predicted measurement
-  Eigen::Matrix<double, N, 1> difference;  ///< workspace of size n
-  Eigen::Matrix<double, NY, 1> residual;   ///< workspace of size n_y
-
-  explicit FilterStep(const FilterModel<N, NY>& model)
-      : predicted_probability(model.mode_count()),
-        transition(model.mode_count(), model.transition_logit),
-        partial(model.structure.dimension(), model.C.rows()),
-        mean(model.structure.dimension()),
-        spread(model.C.rows(), model.C.rows()),
-        difference(model.structure.dimension()),
-        residual(model.C.rows()) {
-    const Eigen::Index K = model.mode_count(), n = model.structure.dimension();
-    kalman.assign(model.modes.size(),
-                  KalmanStep<N, NY>(n, model.C.rows(), model.terms.empty() ? 0 : model.structure.regressors()));
-    log_likelihood.resize(K);
-    mixed.assign(model.modes.size(), Gaussian<N>(n));
-    mixing.setZero(K, K);
-  }
-};
-
-/// The mean of the combined estimate.
-template <int N>
-void combine_means(const FilterState<N>& state, Eigen::Matrix<double, N, 1>& mean) {
-  mean.setZero();
-  for (std::size_t i = 0; i < state.modes.size(); ++i)
-    mean += state.mode_probability(static_cast<Eigen::Index>(i)) * state.modes[i].mean;
-}
-
-/// T of the step from `state` under the acting inputs `u`. A logit is evaluated at the combined estimate. This is exact
-/// if states are measured exactly.
-template <int N, int NY, class U>
-const Eigen::MatrixXd& transition_of_step(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
-                                          FilterStep<N, NY>& step) {
-  if (model.transition_logit.empty()) return model.transition.matrix();
-  combine_means(state, step.difference);
-  return transition_at(model.transition.matrix(), model.transition_logit, step.difference, u, step.transition);
-}
 
 /// Step 1: c_j = sum_i T_ij mu_i (11.6.6-8) and mu_{i|j} = T_ij mu_i / c_j (11.6.6-7). An impossible mode starts from
 /// its own state.
@@ -134,9 +87,8 @@ void merge_some(std::span<const Gaussian<N>> parts, const Weights& weights, Eige
 
 /// Steps 2 and 5: mean and covariance of the mixtures sum_i weights(i, j) N(parts[i]) (moment matching), j = 0, 1, ..
 /// With weights mu_{i|j} the result is the start of mode j (11.6.6-9, -10). With weights mu it is the combined estimate
-/// (11.6.6-17, -18). Differences of means are relative to the final mean. The sum of the weights may differ from one,
-/// because the filter of [S25, eq. 12-13] uses other weights. `exact`: see FilterModel. With it, a row with the same
-/// mean in all parts keeps this mean without rounding. Rounding errors would look like differences between the parts.
+/// (11.6.6-17, -18). The sum of the weights may differ from one ([S25, eq. 12-13]). `exact`: see Sensor. With it, a row
+/// with the same mean in all parts keeps this mean; rounding errors would look like differences between the parts.
 template <int N, class Weights>
 void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weights& weights,
            std::span<Gaussian<N>> merged, bool exact = false) {
@@ -147,9 +99,8 @@ void merge(std::type_identity_t<std::span<const Gaussian<N>>> parts, const Weigh
   for (; j < weights.cols(); ++j) merge_some<1, N>(parts, weights, j, merged.data() + j, exact);
 }
 
-/// Step 4: mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16). This is Bayes' rule in the log
-/// domain: posterior_j is proportional to prior_j exp(log_likelihood_j). Returns log c. The largest term is factored
-/// out first; so 0/0 by underflow is impossible. Requires at least one possible mode.
+/// Step 4: mu_j = Lambda_j c_j / c (11.6.6-15), c = sum_j Lambda_j c_j (11.6.6-16). In the log domain, with the largest
+/// term factored out, 0/0 by underflow is impossible. Returns log c. Requires at least one possible mode.
 template <class Prior, class LogLikelihood>
 double bayes(const Prior& prior, const LogLikelihood& log_likelihood, Eigen::VectorXd& posterior) {
   double largest = -std::numeric_limits<double>::infinity();
@@ -171,122 +122,260 @@ inline void floor_probabilities(Eigen::VectorXd& mu) {
   mu *= 1.0 / sum;
 }
 
-/// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18, for comparison with the paper. Here are
-/// the differences from the IMM.
-namespace salvi2025 {
-
-/// The modes' probabilities from log L_j = log N(C xhat_j - z; 0, S_j). As published in [S25, eq. 16], the residual is
-/// that after the update.
-template <int N, int NY, class Sensor, class Y>
-void weigh_by_posterior(const Sensor& sensor, const Y& z, FilterStep<N, NY>& step, FilterState<N>& state) {
-  for (std::size_t j = 0; j < state.modes.size(); ++j) {
-    small::multiply(step.residual, sensor.C, state.modes[j].mean);
-    step.residual -= z;
-    step.log_likelihood(static_cast<Eigen::Index>(j)) = step.kalman[j].log_normal(step.residual);
-  }
-  bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
-}
-
-}  // namespace salvi2025
-
-/// A state with the sizes of the model.
+/// The filter of a bank in fixed or dynamic size. Call `start` first, then `predict` and `update` for each sample.
+/// Nothing is allocated after construction. A copy of it is a forecast: `step` predicts on without measurements. If the
+/// transition matrix is constant, its moments are exact, because moments of mixtures merge exactly.
 template <int N, int NY>
-FilterState<N> initial_state(const FilterModel<N, NY>& model) {
-  return {std::vector<Gaussian<N>>(model.modes.size(), Gaussian<N>(model.structure.dimension())),
-          model.initial_probability};
-}
+class ImmFilter {
+ public:
+  using Vector = Eigen::Ref<const Eigen::VectorXd>;
+  using Model = FilterModel<N, NY>;
 
-/// x[0] = start_gain y[0], P[0] = start_covariance, mode probabilities from the bank. `y`: first measurement; with lags
-/// the first complete z of measurements.
-template <int N, int NY, class Y>
-void start(const FilterModel<N, NY>& model, const Y& y, FilterState<N>& state) {
-  small::multiply(state.modes[0].mean, model.start_gain, y);
-  state.modes[0].covariance = model.start_covariance;
-  state.modes[0].known = model.exact;
-  for (std::size_t j = 1; j < state.modes.size(); ++j) state.modes[j] = state.modes[0];
-  state.mode_probability = model.initial_probability;
-  floor_probabilities(state.mode_probability);
-}
+  /// Requires check_sizes(bank). Throws std::invalid_argument for options that do not suit this bank.
+  ImmFilter(const Bank& bank, const FilterOptions& options)
+      : model_(std::make_shared<const Model>(bank, options)),
+        state_{{bank.modes.size(), Gaussian<N>(bank.structure.dimension())}, bank.initial_probability},
+        mixed_(state_.modes),
+        kalman_(bank.modes.size(), {bank.structure.dimension(), bank.C.rows(), bank.structure.regressors()}),
+        mixing_(MixingWeights::Zero(bank.mode_count(), bank.mode_count())),
+        transition_(bank.mode_count(), bank.transition_logit),
+        predicted_probability_(bank.initial_probability),
+        log_likelihood_(bank.mode_count()),
+        weights_(bank.mode_count()),
+        partial_(model_->sensor),
+        moments_(bank.structure.dimension()),
+        difference_(bank.structure.dimension()),
+        y_(bank.C.rows()),
+        residual_(bank.C.rows()),
+        spread_(bank.C.rows(), bank.C.rows()) {}
 
-/// Start of each mode's prediction, and the mode probabilities before the measurement.
-template <int N, int NY, class U>
-const std::vector<Gaussian<N>>& mix(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u,
-                                    FilterStep<N, NY>& step) {
-  if (model.mode_count() == 1) {
-    step.predicted_probability = state.mode_probability;
-    return state.modes;
+  /// Starts from the first measurement `y`; with lags, from the first complete z (StartMoments).
+  void start(const Vector& y) {
+    small::multiply(state_.modes[0].mean, model_->start_gain, y);
+    state_.modes[0].covariance = model_->start_covariance;
+    state_.modes[0].known = model_->sensor.exact;
+    std::fill(state_.modes.begin() + 1, state_.modes.end(), state_.modes[0]);
+    state_.mode_probability = model_->bank.initial_probability;
+    floor_probabilities(state_.mode_probability);
   }
-  if (model.variant == FilterVariant::salvi2025) {
-    step.predicted_probability = state.mode_probability;
-    // Weights w(k-1)_i T_ij of [S25, eq. 12-13]. Their sum is below one, so mixed states shrink towards zero.
-    step.mixing.noalias() = state.mode_probability.asDiagonal() * model.transition.matrix();
-  } else {
-    mixing_weights(transition_of_step(model, state, u, step), state.mode_probability, step.predicted_probability,
-                   step.mixing);
-  }
-  const auto known = [&](const Gaussian<N>& mode) { return mode.known && mode.mean == state.modes.front().mean; };
-  if (std::all_of(state.modes.begin(), state.modes.end(), known))
-    step.mixed = state.modes;
-  else
-    merge<N>(state.modes, step.mixing, step.mixed, model.exact);
-  return step.mixed;
-}
+  /// Goes on from the state of a filter of the same bank.
+  void start(const FilterState<N>& state) { state_ = state; }
+  void start(const ImmFilter& origin) { state_ = origin.state_; }
 
-/// Computes everything before the measurement: each mode's prediction and S, and the predicted probabilities.
-template <int N, int NY, class U>
-void predict(const FilterModel<N, NY>& model, const FilterState<N>& state, const U& u, FilterStep<N, NY>& step) {
-  const std::vector<Gaussian<N>>& from = mix(model, state, u, step);
-  double noise_factor = 1.0;  // evaluated at the combined estimate, like a logit
-  if (!model.noise_factor.empty()) {
-    combine_means(state, step.difference);
-    noise_factor = model.noise_factor.at(step.difference, u);
+  /// Predicts the next sample, one model step later, under the acting inputs `v`.
+  void predict(const Vector& v) {
+    mix(v);
+    double noise_factor = 1.0;  // evaluated at the combined estimate, like a logit
+    const NoiseFactor& factor = model_->bank.noise_factor;
+    if (!factor.empty()) noise_factor = factor.at(combined_mean(), v);
+    for (std::size_t j = 0; j < kalman_.size(); ++j) {
+      kalman_[j].predict(mixed_[j], *model_, model_->modes[j], v, noise_factor);
+      kalman_[j].expect(model_->sensor);
+    }
   }
-  for (std::size_t j = 0; j < model.modes.size(); ++j) {
-    step.kalman[j].predict(from[j], model, model.modes[j], u, noise_factor);
-    step.kalman[j].expect(model);
+  /// One model step without a measurement: the prediction becomes the estimate.
+  void step(const Vector& v) {
+    predict(v);
+    skip_measurement();
   }
-}
+  /// Steps 3 and 4 after `predict`. Returns the log predictive density [nats] of the available signals; NaN if there
+  /// are none. So is log Lambda_j = log N(y - C x_j; 0, S_j) (11.6.6-13).
+  double update(const Vector& y) {
+    y_ = y;
+    partial_.missing = missing_entries(y_);
+    if (partial_.missing == y_.size()) {
+      skip_measurement();
+      return not_a_number;
+    }
+    if (partial_.missing > 0) {
+      partial_.take_part(model_->sensor, y_);
+      for (KalmanStep<N, NY>& mode : kalman_) mode.expect(partial_);
+    }
+    const double excess = 0.5 * log_two_pi * static_cast<double>(partial_.missing);
+    for (Eigen::Index j = 0; j < weights_.size(); ++j) {
+      kalman_[j].observe(sensor(), y_);
+      kalman_[j].correct(sensor(), y_, state_.modes[j]);
+      log_likelihood_(j) = kalman_[j].log_density + excess;
+    }
+    if (kalman_.size() == 1) return log_likelihood_(0);
+    const double log_density = bayes(predicted_probability_, log_likelihood_, state_.mode_probability);
+    if (model_->variant == FilterVariant::salvi2025) weigh_by_posterior();
+    floor_probabilities(state_.mode_probability);
+    return log_density;
+  }
 
-/// Steps 3 and 4 without a measurement: the prediction becomes the estimate.
-template <int N, int NY>
-void skip_measurement(FilterStep<N, NY>& step, FilterState<N>& state) {
-  for (std::size_t j = 0; j < state.modes.size(); ++j) state.modes[j] = step.kalman[j].predicted;
-  state.mode_probability = step.predicted_probability;
-  floor_probabilities(state.mode_probability);
-}
-
-/// Steps 3 and 4 with a measurement `y` of `sensor`: the model, or its part for the available signals. Log Lambda_j =
-/// log N(y - C x_j; 0, S_j) (11.6.6-13) is that of the available signals.
-template <int N, int NY, class Sensor, class Y>
-double take_in(const FilterModel<N, NY>& model, const Sensor& sensor, const Y& y, FilterStep<N, NY>& step,
-               FilterState<N>& state) {
-  const double excess = 0.5 * log_two_pi * static_cast<double>(step.partial.missing);
-  for (std::size_t h = 0; h < step.kalman.size(); ++h) {
-    step.kalman[h].observe(sensor, y);
-    step.kalman[h].correct(sensor, y, state.modes[h]);
-    step.log_likelihood(static_cast<Eigen::Index>(h)) = step.kalman[h].log_density + excess;
+  const Model& model() const { return *model_; }
+  const FilterState<N>& state() const { return state_; }
+  const Eigen::VectorXd& mode_probability() const { return state_.mode_probability; }      ///< K
+  const Eigen::VectorXd& predicted_probability() const { return predicted_probability_; }  ///< K
+  const Eigen::VectorXd& log_likelihood() const { return log_likelihood_; }    ///< K, of the last measurement
+  const Gaussian<N>& mixed(std::size_t j) const { return mixed_[j]; }          ///< start of mode j's last prediction
+  const MixingWeights& mixing() const { return mixing_; }                      ///< of the last prediction
+  const KalmanStep<N, NY>& kalman(std::size_t j) const { return kalman_[j]; }  ///< last step of mode j
+  /// Sensor of the last measurement.
+  const Sensor<N, NY>& sensor() const { return partial_.missing > 0 ? partial_ : model_->sensor; }
+  /// T of the next step. A logit is evaluated at the combined estimate: exact if states are measured exactly.
+  const Eigen::MatrixXd& transition(const Vector& v) {
+    const Bank& bank = model_->bank;
+    if (bank.transition_logit.empty()) return bank.transition.matrix();
+    return transition_at(bank.transition.matrix(), bank.transition_logit, combined_mean(), v, transition_);
   }
-  if (model.mode_count() == 1) return step.log_likelihood(0);
-  const double log_density = bayes(step.predicted_probability, step.log_likelihood, state.mode_probability);
-  if (model.variant == FilterVariant::salvi2025) salvi2025::weigh_by_posterior(sensor, y, step, state);
-  floor_probabilities(state.mode_probability);
-  return log_density;
-}
 
-/// Updates with the measurement after `predict`. Returns the log predictive density of the available signals. The
-/// density uses only information from before the measurement. If all signals are missing, the prediction becomes the
-/// estimate, and the result is NaN.
-template <int N, int NY, class Y>
-double update(const FilterModel<N, NY>& model, const Y& y, FilterStep<N, NY>& step, FilterState<N>& state) {
-  step.partial.missing = missing_entries(y);
-  if (step.partial.missing == 0) return take_in(model, model, y, step, state);
-  if (step.partial.missing == y.size()) {
-    skip_measurement(step, state);
-    return std::numeric_limits<double>::quiet_NaN();
+  /// Moments of the predicted mixture, n and n_y x n_y: x = sum c_j x_j, S = sum c_j (S_j + (e_j - e)(e_j - e)'). Call
+  /// after `predict`.
+  void combine(Eigen::VectorXd& state, Eigen::MatrixXd& innovation_covariance) {
+    const Eigen::VectorXd& c = predicted_probability_;
+    moments_.mean.setZero();
+    for (Eigen::Index j = 0; j < c.size(); ++j) moments_.mean += c(j) * kalman_[j].predicted.mean;
+    spread_.setZero();
+    for (Eigen::Index j = 0; j < c.size(); ++j) {
+      difference_ = kalman_[j].predicted.mean - moments_.mean;
+      small::multiply(residual_, model_->sensor.C, difference_);
+      small::add_about_mean(spread_, c(j), kalman_[j].innovation_covariance, residual_);
+    }
+    state = moments_.mean;
+    innovation_covariance = spread_;
   }
-  step.partial.assign(model, y);
-  for (KalmanStep<N, NY>& mode : step.kalman) mode.expect(step.partial);
-  return take_in(model, step.partial, step.partial.y, step, state);
-}
+  /// Probability integral transform of the last measurement y (Rosenblatt 1952). Component i is the predictive
+  /// distribution function at y_i, given the earlier signals y_1 .. y_(i-1), which have updated the mixture weights.
+  /// NaN if y_i is missing. For a rounded signal it lies between the values at both ends of y_i's interval: `pit` is
+  /// their mean and `width` their difference, else 0. `log_density`: that of `update`; if signals are rounded it
+  /// becomes that of their intervals. Overwrites log_likelihood().
+  void transform(const Vector& y, Eigen::VectorXd& pit, Eigen::VectorXd& width, double& log_density) {
+    const bool rounded = model_->quantum.size() > 0;
+    double of_intervals = 0.0;
+    weights_ = predicted_probability_;
+    width.setZero();
+    for (Eigen::Index i = 0; i < pit.size(); ++i) {
+      pit(i) = not_a_number;
+      if (is_missing(y(i))) continue;
+      const bool scores = rounded || i + 1 < pit.size();
+      const double quantum = rounded ? model_->quantum(i) : 0.0, half = 0.5 * quantum;
+      double low = 0.0, high = 0.0;
+      for (Eigen::Index j = 0; j < weights_.size(); ++j) {
+        const ModeSignal signal{kalman_[j].decorrelated(i), kalman_[j].cholesky.D(i)};
+        const double deviation = signal.unrounded_deviation(quantum);
+        high += weights_(j) * normal_cdf((signal.e + half) / deviation);
+        if (quantum > 0.0) low += weights_(j) * normal_cdf((signal.e - half) / deviation);
+        if (scores) log_likelihood_(j) = signal.log_density(quantum);
+      }
+      high = high < 1.0 ? high : 1.0;  // limits rounding errors of the sum of weights
+      low = quantum > 0.0 ? std::min(low, high) : high;
+      pit(i) = 0.5 * (low + high);
+      width(i) = high - low;
+      if (scores) of_intervals += bayes(weights_, log_likelihood_, weights_);
+    }
+    if (rounded) log_density = of_intervals;
+  }
+  /// Moments of the present mixture, n and n x n.
+  void merge(Eigen::VectorXd& mean, Eigen::MatrixXd& covariance) {
+    modebank::merge<N>(state_.modes, state_.mode_probability, {&moments_, 1});
+    mean = moments_.mean;
+    covariance = moments_.covariance;
+  }
+
+  ImmFilter forecast() const { return *this; }
+  /// Log density of a complete measurement [nats], with the masses of intervals for rounded signals; `error`:
+  /// measurement minus combined prediction. Changes no state.
+  template <class Y, class Error>
+  double observe(const Y& y, Error&& error) {
+    error = y;
+    for (Eigen::Index j = 0; j < weights_.size(); ++j) {
+      KalmanStep<N, NY>& mode = kalman_[j];
+      mode.observe(model_->sensor, y);
+      log_likelihood_(j) = mode.log_density;
+      if (model_->quantum.size() > 0) {
+        log_likelihood_(j) = 0.0;
+        for (Eigen::Index i = 0; i < y.size(); ++i)
+          log_likelihood_(j) += ModeSignal{mode.decorrelated(i), mode.cholesky.D(i)}.log_density(model_->quantum(i));
+      }
+      error -= predicted_probability_(j) * (y - mode.innovation);
+    }
+    return bayes(predicted_probability_, log_likelihood_, weights_);
+  }
+  /// Predicted distribution of signal i, whatever the other signals are.
+  SignalMixture signal(Eigen::Index i) const {
+    SignalMixture result{predicted_probability_, predicted_probability_, predicted_probability_};
+    for (Eigen::Index j = 0; j < result.mean.size(); ++j) {
+      result.mean(j) = model_->sensor.C.row(i).dot(kalman_[j].predicted.mean);
+      result.deviation(j) = std::sqrt(std::max(kalman_[j].innovation_covariance(i, i), least_variance));
+    }
+    return result;
+  }
+
+  /// The parts of a snapshot. After they have been read, `settle` throws std::invalid_argument if the state is none.
+  std::vector<SnapshotPart> parts() {
+    std::vector<SnapshotPart> parts{numbers_of(state_.mode_probability)};
+    for (Gaussian<N>& mode : state_.modes) {
+      parts.push_back(numbers_of(mode.mean));
+      parts.push_back(numbers_of(mode.covariance));
+    }
+    return parts;
+  }
+  void settle() {
+    const Eigen::VectorXd& mu = state_.mode_probability;
+    bool usable = mu.minCoeff() >= 0.0 && mu.sum() > 0.0 && std::isfinite(mu.sum());
+    for (Gaussian<N>& mode : state_.modes) {
+      usable = usable && mode.mean.allFinite() && is_covariance(mode.covariance);
+      mode.known = model_->sensor.exact && mode.covariance.isZero(0.0);
+    }
+    if (!usable) throw std::invalid_argument("the snapshot has a state that is not finite or out of range");
+  }
+
+ private:
+  std::shared_ptr<const Model> model_;
+  FilterState<N> state_;
+  // results of the last step, sized once
+  std::vector<Gaussian<N>> mixed_;         ///< K
+  std::vector<KalmanStep<N, NY>> kalman_;  ///< K
+  MixingWeights mixing_;
+  TransitionWorkspace transition_;
+  Eigen::VectorXd predicted_probability_, log_likelihood_, weights_;  ///< K; c, log Lambda
+  Sensor<N, NY> partial_;                                             ///< valid where signals are missing
+  Gaussian<N> moments_;
+  Eigen::Matrix<double, N, 1> difference_;
+  Eigen::Matrix<double, NY, 1> y_, residual_;
+  Eigen::Matrix<double, NY, NY> spread_;
+
+  const Eigen::Matrix<double, N, 1>& combined_mean() {
+    difference_.setZero();
+    for (Eigen::Index i = 0; i < weights_.size(); ++i) difference_ += state_.mode_probability(i) * state_.modes[i].mean;
+    return difference_;
+  }
+
+  /// Steps 1 and 2: start of each mode's prediction, and the mode probabilities before the measurement.
+  void mix(const Vector& v) {
+    const Eigen::VectorXd& mu = state_.mode_probability;
+    predicted_probability_ = mu;
+    if (model_->variant == FilterVariant::salvi2025)
+      // Weights w(k-1)_i T_ij of [S25, eq. 12-13]. Their sum is below one, so mixed states shrink towards zero.
+      mixing_.noalias() = mu.asDiagonal() * model_->bank.transition.matrix();
+    else if (kalman_.size() > 1)
+      mixing_weights(transition(v), mu, predicted_probability_, mixing_);
+    const Gaussian<N>& first = state_.modes.front();
+    const auto known = [&](const Gaussian<N>& mode) { return mode.known && mode.mean == first.mean; };
+    if (kalman_.size() == 1 || std::all_of(state_.modes.begin(), state_.modes.end(), known))
+      mixed_ = state_.modes;
+    else
+      modebank::merge<N>(state_.modes, mixing_, mixed_, model_->sensor.exact);
+  }
+
+  void skip_measurement() {
+    for (std::size_t j = 0; j < kalman_.size(); ++j) state_.modes[j] = kalman_[j].predicted;
+    state_.mode_probability = predicted_probability_;
+    floor_probabilities(state_.mode_probability);
+  }
+
+  /// The filter as published in Salvi et al. (2025), arXiv 2505.00200, eq. 12-18: modes' probabilities are from log L_j
+  /// = log N(C xhat_j - z; 0, S_j). As published in [S25, eq. 16], the residual is that after the update.
+  void weigh_by_posterior() {
+    for (Eigen::Index j = 0; j < weights_.size(); ++j) {
+      small::multiply(residual_, sensor().C, state_.modes[j].mean);
+      residual_ -= y_;
+      log_likelihood_(j) = kalman_[j].log_normal(residual_);
+    }
+    bayes(predicted_probability_, log_likelihood_, state_.mode_probability);
+  }
+};
 
 }  // namespace modebank

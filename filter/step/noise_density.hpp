@@ -33,11 +33,10 @@ inline double log_normal_mass(double middle, double width) {
   return std::log(ratio(high) - ratio(low) * std::exp(-m * width)) - 0.5 * (log_two_pi + high * high);
 }
 
-/// Student's t distribution with `degrees` degrees of freedom, scaled to variance one (squared scale (degrees - 2) /
-/// degrees). If `degrees` is 0, the normal distribution.
+/// Student's t distribution, scaled to variance one. With 0 degrees of freedom, the normal distribution.
 class StudentNoise {
  public:
-  /// Throws std::invalid_argument unless `degrees` is 0 or above 2. For 2 or less the variance would be infinite.
+  /// Throws std::invalid_argument unless `degrees` is 0 or above 2: the variance would be infinite.
   explicit StudentNoise(double degrees) : degrees_(degrees), log_constant_(-0.5 * log_two_pi) {
     if (degrees != 0.0 && !(degrees > 2.0 && std::isfinite(degrees)))
       throw std::invalid_argument(
@@ -50,8 +49,7 @@ class StudentNoise {
 
   double degrees() const { return degrees_; }
   bool gaussian() const { return degrees_ == 0.0; }
-  /// The part of the log density that does not depend on the value [nats].
-  double log_constant() const { return log_constant_; }
+  double log_constant() const { return log_constant_; }  ///< of the log density: does not depend on the value [nats]
   /// Log density [nats] of a value, given the value's square.
   double log_density(double square) const {
     return gaussian() ? log_constant_ - 0.5 * square
@@ -70,8 +68,7 @@ class StudentNoise {
   /// log P(|X - middle| <= width / 2), with width > 0.
   double log_mass(double middle, double width) const {
     if (gaussian()) return log_normal_mass(middle, width);
-    // If an interval is narrow compared with its distance from zero, the difference loses digits. The probability is
-    // then computed from the density.
+    // The difference over an interval that is narrow compared with its distance from zero loses digits.
     constexpr double narrow = 1e-3;
     if (width < narrow * (1.0 + std::abs(middle))) return log_density(middle * middle) + std::log(width);
     const double high = 0.5 * width - std::abs(middle);  // the lower tail has more accurate digits
@@ -121,13 +118,11 @@ struct SignalMixture {
 struct ModeSignal {
   double e = 0.0, s = 0.0;
 
-  /// Standard deviation of the signal before it was rounded. R is at least the variance of rounding, q^2 / 12, so s
-  /// contains it; the interval's mass must not count it again.
+  /// Standard deviation before rounding. s contains its variance, q^2 / 12, which the mass must not count again.
   double unrounded_deviation(double quantum) const {
     return std::sqrt(std::max(s - quantum * quantum / 12.0, relative_pivot_floor * s));
   }
-  /// Log of the mean density of the reading's interval, log(mass / q). As q goes to 0 it tends to the log density, so
-  /// scores of coarse and fine readings have one unit.
+  /// Log of the mean density of the reading's interval, log(mass / q); for q = 0 the log density, in the same unit.
   double log_density(double quantum) const {
     if (quantum == 0.0) return -0.5 * (log_two_pi + std::log(s) + e * e / s);
     const double deviation = unrounded_deviation(quantum);

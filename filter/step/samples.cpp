@@ -14,7 +14,7 @@ SampleFeed::SampleFeed(const Bank& bank)
     : inputs_(bank.structure.inputs),
       latest_delay_(bank.structure.input_delay.latest()),
       acting_inputs_(bank.structure.acting_inputs()),
-      first_transition_(bank.structure.first_transition()),
+      needed_samples_(static_cast<double>(bank.structure.first_transition() + 1)),
       dt_s_(bank.dt_s),
       // The acting inputs of sample k are the `input_lags` inputs u[k-d], u[k-d-1], ..., where d is the input's delay.
       recent_(Eigen::MatrixXd::Zero(inputs_, latest_delay_ + bank.structure.input_lags)),
@@ -27,17 +27,8 @@ Index SampleFeed::whole_steps(double periods) {
   return std::lround(std::clamp(periods, 1.0, static_cast<double>(longest_gap_steps + 1)));
 }
 
-void SampleFeed::push(double time_s, const Eigen::Ref<const Eigen::VectorXd>& input,
-                      const Eigen::Ref<const Eigen::VectorXd>& measurement) {
-  if (input.size() != inputs_ || measurement.size() != measurements_.rows())
-    throw std::invalid_argument("a sample of " + std::to_string(input.size()) + " inputs and " +
-                                std::to_string(measurement.size()) + " measurements, the bank has " +
-                                std::to_string(inputs_) + " and " + std::to_string(measurements_.rows()));
-  push(time_s, input.data(), measurement.data());
-}
-
 void SampleFeed::settle() const {
-  if (!recent_.allFinite() || samples_ < 0 || whole_ < 0 || whole_ > samples_)
+  if (!recent_.allFinite() || !(samples_ >= whole_ && whole_ >= 0.0))
     throw std::invalid_argument("the snapshot has samples with invalid counts or inputs");
 }
 
@@ -57,6 +48,27 @@ void check_run(const Bank& bank, const Trajectory& run) {
   for (Index k = 0; k < run.transitions(); ++k)
     if (!run.input.col(k).allFinite())
       throw DataError("run " + run.run + ": the input of sample " + std::to_string(k) + " is not a finite number");
+}
+
+RunInstants::RunInstants(const Bank& bank, const Trajectory& run) {
+  SampleFeed feed(bank);
+  std::vector<double> acting;
+  bool started = false;
+  for (Index k = 0; k < run.samples(); ++k) {
+    feed.push(sample_time_s(run, k), run.input.col(k).data(), run.state.col(k).data());
+    started = started && feed.steps() <= longest_gap_steps;
+    if (!started && !feed.can_start()) continue;
+    const auto v = feed.inputs();
+    for (Index i = started ? feed.steps() : 1; i > 0; --i) {
+      instants.emplace_back();
+      acting.insert(acting.end(), v.data(), v.data() + v.size());
+    }
+    instants.back().sample = k;
+    instants.back().starts = !started;
+    if (!started) instants.back().start = feed.start();
+    started = true;
+  }
+  inputs = Eigen::MatrixXd::Map(acting.data(), bank.structure.acting_inputs(), count());
 }
 
 }  // namespace modebank

@@ -12,7 +12,6 @@
 #include "filter/judge/diagnostics.hpp"
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/finding.hpp"
-#include "filter/judge/free_run.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
 #include "filter/learn/chain/chain.hpp"

@@ -138,14 +138,12 @@ double live(const Bank& bank, const Trajectory& run) {
 /// The filter computed from its equations, for every variant and size.
 template <int N, int NY>
 double equations(const Bank& bank, const Trajectory& run) {
-  const FilterModel<N, NY> model(bank, {});
-  FilterStep<N, NY> step(model);
-  FilterState<N> state = initial_state(model);
-  start(model, run.state.col(0), state);
+  ImmFilter<N, NY> filter(bank, {});
+  filter.start(run.state.col(0));
   double sum = 0.0;
   for (Index k = 1; k < run.samples(); ++k) {
-    predict(model, state, run.input.col(k - 1), step);
-    sum += update(model, run.state.col(k), step, state);
+    filter.predict(run.input.col(k - 1));
+    sum += filter.update(run.state.col(k));
   }
   return sum;
 }

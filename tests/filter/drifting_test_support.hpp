@@ -70,13 +70,14 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
   run.state = Eigen::MatrixXd::Zero(s.states, samples);
   run.input.resize(s.inputs, samples);
   for (double& u : run.input.reshaped()) u = 2.0 * uniform(generator) - 1.0;
-  const Eigen::MatrixXd theta0 = DriftingModel(model).theta0;
+  const DriftingModel scaled(model);
+  const Eigen::MatrixXd& theta0 = scaled.theta0;
   Eigen::MatrixXd theta = theta0;
   const auto wander = [&](double variance) {
     for (Index i = 0; i < s.states; ++i)
       for (double& value : theta.col(i)) value += std::sqrt(variance * model.noise_variance()(i)) * normal(generator);
   };
-  Eigen::VectorXd h(s.regressors());
+  Eigen::VectorXd z = Eigen::VectorXd::Zero(s.dimension()), v(s.acting_inputs()), h(s.regressors());
   for (Index k = s.first_transition() + 1; k < samples; ++k) {
     if (k == s.first_transition() + 1) {
       wander(model.drift.rates.p0);
@@ -84,14 +85,13 @@ inline Trajectory simulate_drifting(const Bank& model, Index samples, std::uint6
       theta = theta0 + model.drift.rates.leak * (theta - theta0);
       wander(model.drift.rates.q);
     }
-    Eigen::VectorXd z(s.dimension()), v(s.acting_inputs());
-    for (Index i = 0; i < s.state_lags; ++i) z.segment(i * s.states, s.states) = run.state.col(k - 1 - i);
     for (Index i = 0; i < s.input_lags; ++i)
       for (Index j = 0; j < s.inputs; ++j) v(i * s.inputs + j) = run.input(j, k - s.input_delay[j] - i);
-    fill_regressor(s, z, v, h);
-    run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h.cwiseQuotient(model.drift.scale);
+    scaled.fill(z, v, h);
+    run.state.col(k) = run.state.col(k - 1) + theta.transpose() * h;
     for (Index i = 0; i < s.states; ++i)
       run.state(i, k) += std::sqrt(model.noise_variance()(i)) * draw_noise(model.running_noise.nu, generator);
+    scaled.push(run.state.col(k), z);
   }
   return run;
 }

@@ -48,14 +48,27 @@ inline Bank steppable(Bank bank, FilterVariant variant) {
   return variant == FilterVariant::kf ? single_mode(std::move(bank), 0) : bank;
 }
 
-/// The row of a filter on unseen runs.
-inline DiagnosticsRow row_of(const Bank& bank, std::vector<Trajectory> runs, const FilterOptions& options = {}) {
+inline std::vector<RunScores> score_runs(const std::vector<RunEvaluation>& evaluations) {
+  std::vector<RunScores> scores;
+  for (const RunEvaluation& evaluation : evaluations) scores.push_back(score_run(evaluation));
+  return scores;
+}
+
+/// The rows of a filter on unseen runs.
+inline std::vector<DiagnosticsRow> diagnose_runs(const Bank& bank, std::vector<Trajectory> runs,
+                                                 const FilterOptions& options = {}) {
   std::vector<RunEvaluation> evaluations;
   for (Trajectory& run : runs) {
     run.role = Role::test;
     evaluations.push_back(evaluate_run(bank, run, options));
+    evaluations.back().viterbi_mode = mode_sequence(bank, run, options);
   }
-  return diagnose("bank", Role::test, bank, bank.mode_count() == 1, runs, evaluations, score_runs(evaluations)).front();
+  return diagnose("bank", Role::test, bank, bank.mode_count() == 1, runs, evaluations, score_runs(evaluations));
+}
+
+/// The row of the whole filter.
+inline DiagnosticsRow row_of(const Bank& bank, const std::vector<Trajectory>& runs, const FilterOptions& options = {}) {
+  return diagnose_runs(bank, runs, options).front();
 }
 
 /// The row of a filter on signals with these scores. `nis`: factor on the NIS.

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <cmath>
 
-#include "filter/judge/free_run.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
 

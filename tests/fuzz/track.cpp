@@ -24,8 +24,9 @@ void track_lines(std::string_view text) {
   double last_s = -INFINITY;
   for (std::size_t begin = 0; begin < text.size();) {
     const std::size_t end = std::min(text.find('\n', begin), text.size());
-    reader.read({std::string(text.substr(begin, end - begin))}, [&](std::size_t, app::SampleReader::Line kind) {
-      const TimedSample& sample = reader.sample();
+    const std::string line(text.substr(begin, end - begin));
+    reader.read({&line, 1}, [&](std::size_t, app::SampleReader::Line kind) {
+      const app::TimedSample& sample = reader.sample();
       if (kind != app::SampleReader::Line::sample || !(sample.time_s > last_s)) return;
       last_s = sample.time_s;
       filter.step(sample.time_s, sample.input, sample.measurement);

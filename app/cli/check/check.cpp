@@ -109,7 +109,7 @@ void check_channels(const Material& material, const std::string& name, const std
 
 void check_all_channels(const DataOptions& data, const Material& material, DataCheck& check) {
   const auto unit = [](const std::vector<std::string>& units, std::size_t i) {
-    return units.empty() ? "" : units[units.size() == 1 ? 0 : std::min(i, units.size() - 1)];
+    return units.empty() ? "" : units[std::min(i, units.size() - 1)];
   };
   for (std::size_t i = 0; i < data.state.size(); ++i)
     check_channels(material, data.state[i], unit(data.state_unit, i), true, static_cast<Index>(i), check);
@@ -119,15 +119,10 @@ void check_all_channels(const DataOptions& data, const Material& material, DataC
 
 /// Share of repeated samples in motion, over all runs.
 double repeats_of(const Material& material, bool is_state, Index row) {
-  std::vector<VectorXd> rows;
   std::vector<bool> at_rest;
-  for (std::size_t i = 0; i < material.ordered.size(); ++i) {
-    const RunPair& run = material.ordered[i];
-    const std::vector<bool>& rests = (is_state ? material.states_rest : material.inputs_still)[i];
+  for (const std::vector<bool>& rests : is_state ? material.states_rest : material.inputs_still)
     at_rest.insert(at_rest.end(), rests.begin(), rests.end());
-    rows.push_back((is_state ? run.states : run.inputs).values.row(row));
-  }
-  return repeats_in_motion(joined(rows), at_rest);
+  return repeats_in_motion(joined(rows_of(material.ordered, is_state, row)), at_rest);
 }
 
 void check_runs(Material& material, DataCheck& check) {
@@ -185,13 +180,6 @@ Recording training_of(const Material& material, const DataCheck& check) {
   return training;
 }
 
-Index longest_training_stretch(const Material& material) {
-  Index longest = 0;
-  for (const Trajectory& part : material.parts)
-    if (part.role == Role::train) longest = std::max(longest, part.transitions());
-  return longest;
-}
-
 /// Reason why identification would fail; empty if it would succeed.
 std::string find_unusable(const DataCheck& check, const Recording& training) {
   for (const RunReport& run : check.runs)
@@ -230,7 +218,8 @@ DataCheck check_data(const CheckOptions& options) {
   check_runs(material, check);
   check_lags(options, material, check);
   const Recording training = training_of(material, check);
-  check.longest_stretch = longest_training_stretch(material);
+  for (const Trajectory& part : training.runs)
+    check.longest_stretch = std::max(check.longest_stretch, part.transitions());
   check.unidentifiable_effects = unidentifiable_effects(training, material.structure);
   check.unusable = find_unusable(check, training);
   return check;

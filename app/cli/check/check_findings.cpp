@@ -24,44 +24,39 @@ std::string runs_where(const DataCheck& check, const std::function<bool(const Ru
   return names.size() > shown ? text + fmt::format(" and {} more", names.size() - shown) : text;
 }
 
-Index sum_over(const DataCheck& check, const std::function<Index(const RunReport&)>& value) {
+/// A count of both streams, over all runs.
+Index total(const DataCheck& check, Index SamplingCheck::*count) {
   Index sum = 0;
-  for (const RunReport& run : check.runs) sum += value(run);
+  for (const RunReport& run : check.runs) sum += run.inputs.*count + run.states.*count;
   return sum;
 }
 
-Index disorder(const SamplingCheck& s) { return s.repeated_times + s.backward_times; }
+/// Names of the runs in which one of the counts is not 0 for a stream.
+std::string runs_with(const DataCheck& check, const std::vector<Index SamplingCheck::*>& counts) {
+  return runs_where(check, [&](const RunReport& run) {
+    return std::ranges::any_of(counts, [&](auto count) { return run.inputs.*count + run.states.*count > 0; });
+  });
+}
 
 void time_findings(const DataCheck& check, const Config& config, std::vector<std::string>& found) {
   const auto add = [&](bool accepted, const std::string& text, const std::string& mend) {
     found.push_back(text + (accepted ? " (accepted as configured)" : ": " + mend));
   };
-  if (const auto runs =
-          runs_where(check, [](const RunReport& r) { return disorder(r.inputs) + disorder(r.states) > 0; });
-      !runs.empty())
+  constexpr auto repeated = &SamplingCheck::repeated_times, backward = &SamplingCheck::backward_times,
+                 missing = &SamplingCheck::missing_samples;
+  if (const auto runs = runs_with(check, {repeated, backward}); !runs.empty())
     add(config.data.disorder == Disorder::sort,
-        fmt::format(
-            "time repeats {} times and goes backwards {} times in {}",
-            sum_over(check, [](const RunReport& r) { return r.inputs.repeated_times + r.states.repeated_times; }),
-            sum_over(check, [](const RunReport& r) { return r.inputs.backward_times + r.states.backward_times; }),
-            runs),
+        fmt::format("time repeats {} times and goes backwards {} times in {}", total(check, repeated),
+                    total(check, backward), runs),
         "data.disorder = sort accepts it");
-  if (const auto runs =
-          runs_where(check, [](const RunReport& r) { return r.inputs.missing_samples + r.states.missing_samples > 0; });
-      !runs.empty())
+  if (const auto runs = runs_with(check, {missing}); !runs.empty())
     add(config.data.missing != Missing::error,
-        fmt::format(
-            "{} samples miss a value in {}",
-            sum_over(check, [](const RunReport& r) { return r.inputs.missing_samples + r.states.missing_samples; }),
-            runs),
+        fmt::format("{} samples miss a value in {}", total(check, missing), runs),
         "data.missing = gap or predict accepts them");
-  if (const auto runs =
-          runs_where(check, [](const RunReport& r) { return r.inputs.missing_times + r.states.missing_times > 0; });
-      !runs.empty())
+  if (const auto runs = runs_with(check, {&SamplingCheck::missing_times}); !runs.empty())
     found.push_back(
         fmt::format("samples without a time in {}; remove these rows, since no setting accepts them", runs));
-  if (const auto runs = runs_where(check, [](const RunReport& r) { return r.inputs.gaps + r.states.gaps > 0; });
-      !runs.empty())
+  if (const auto runs = runs_with(check, {&SamplingCheck::gaps}); !runs.empty())
     found.push_back(fmt::format("gaps of more than 5 periods in {}, which split these runs", runs));
   const auto scatters = [](const RunReport& r) { return r.inputs.jitter > most_step_scatter; };
   if (const auto runs = runs_where(check, scatters); !runs.empty()) {

@@ -1,7 +1,6 @@
 #include <nlohmann/json.hpp>
 
 #include "app/cli/check/check_output.hpp"
-#include "app/cli/json_number.hpp"
 
 namespace modebank::app {
 namespace {
@@ -10,38 +9,31 @@ using nlohmann::json;
 
 json sampling_json(const SamplingCheck& s) {
   return {{"samples", s.samples},
-          {"duration_s", json_number(s.duration_s)},
-          {"rate_hz", json_number(s.rate_hz)},
-          {"jitter", json_number(s.jitter)},
+          {"duration_s", s.duration_s},
+          {"rate_hz", s.rate_hz},
+          {"jitter", s.jitter},
           {"gaps", s.gaps},
-          {"longest_gap_s", json_number(s.longest_gap_s)},
+          {"longest_gap_s", s.longest_gap_s},
           {"repeated_times", s.repeated_times},
           {"backward_times", s.backward_times},
           {"missing_times", s.missing_times},
           {"missing_samples", s.missing_samples},
-          {"repeated_samples", json_number(s.repeated_samples)}};
+          {"repeated_samples", s.repeated_samples}};
 }
 
 json channel_json(const std::string& name, const ChannelCheck& c, double saturated) {
-  return {{"name", name},
-          {"missing", c.missing},
-          {"least", json_number(c.least)},
-          {"largest", json_number(c.largest)},
-          {"mean", json_number(c.mean)},
-          {"sd", json_number(c.sd)},
-          {"quantum", json_number(c.quantum)},
-          {"levels", c.levels},
-          {"repeated", json_number(c.repeated)},
-          {"outliers", c.outliers},
-          {"saturated", json_number(saturated)}};
+  return {{"name", name},           {"missing", c.missing},  {"least", c.least},
+          {"largest", c.largest},   {"mean", c.mean},        {"sd", c.sd},
+          {"quantum", c.quantum},   {"levels", c.levels},    {"repeated", c.repeated},
+          {"outliers", c.outliers}, {"saturated", saturated}};
 }
 
 json lag_json(const RunLag& lag) {
   return {{"status", name_of(lag.status)},
-          {"lag_s", json_number(lag.lag_s)},
-          {"lag_standard_error_s", json_number(lag.lag_standard_error_s)},
-          {"time_constant_s", json_number(lag.time_constant_s)},
-          {"r_squared", json_number(lag.r_squared)}};
+          {"lag_s", lag.lag_s},
+          {"lag_standard_error_s", lag.lag_standard_error_s},
+          {"time_constant_s", lag.time_constant_s},
+          {"r_squared", lag.r_squared}};
 }
 
 json run_json(const DataCheck& check, const RunReport& run) {
@@ -57,24 +49,24 @@ json run_json(const DataCheck& check, const RunReport& run) {
           {"states_sampling", sampling_json(run.states)},
           {"states", states},
           {"inputs", inputs},
-          {"still", json_number(run.commands.still)},
-          {"longest_constant_s", json_number(run.commands.longest_constant_s)},
-          {"changes", json_number(run.commands.changes)},
-          {"rest_s", json_number(run.rest.duration_s)},
-          {"rest_mean", json_numbers(run.rest.mean)},
-          {"rest_sd", json_numbers(run.rest.sd)},
+          {"still", run.commands.still},
+          {"longest_constant_s", run.commands.longest_constant_s},
+          {"changes", run.commands.changes},
+          {"rest_s", run.rest.duration_s},
+          {"rest_mean", run.rest.mean},
+          {"rest_sd", run.rest.sd},
           {"excitation_order", run.excitation},
           {"transitions", run.transitions},
           {"windows", run.windows.windows},
-          {"deficient_windows", json_number(run.windows.share())},
+          {"deficient_windows", run.windows.share()},
           {"lag", lag_json(run.lag)},
           {"problem", run.problem}};
 }
 
 json pooled_json(const PooledEstimate& pooled) {
-  return {{"mean", json_number(pooled.mean)},
-          {"standard_error", json_number(pooled.standard_error)},
-          {"between_runs_sd", json_number(pooled.between_sd)},
+  return {{"mean", pooled.mean},
+          {"standard_error", pooled.standard_error},
+          {"between_runs_sd", pooled.between_sd},
           {"runs", pooled.count}};
 }
 
@@ -83,10 +75,10 @@ json lags_json(const LagReport& lag) {
   for (const LagScore& score : lag.scores)
     scores.push_back({{"correction", name_of(score.correction)},
                       {"transitions", score.transitions},
-                      {"log_score", json_number(score.log_score)},
-                      {"rmse", json_number(score.rmse)},
-                      {"gain", json_number(score.gain)},
-                      {"gain_standard_error", json_number(score.gain_standard_error)}});
+                      {"log_score", score.log_score},
+                      {"rmse", score.rmse},
+                      {"gain", score.gain},
+                      {"gain_standard_error", score.gain_standard_error}});
   return {{"correction", name_of(lag.correction)}, {"lag_s", pooled_json(lag.lag)}, {"scores", scores}};
 }
 
@@ -99,8 +91,8 @@ json check_json(const DataCheck& check, const std::vector<std::string>& findings
     json entry = channel_json(channel.channel.name, channel.values, channel.saturated);
     entry["kind"] = channel.is_state ? "state" : "input";
     entry["saturation_soft"] = channel.limits.soft;
-    entry["saturation_low"] = json_number(channel.limits.low);
-    entry["saturation_high"] = json_number(channel.limits.high);
+    entry["saturation_low"] = channel.limits.low;
+    entry["saturation_high"] = channel.limits.high;
     channels.push_back(entry);
   }
   return {{"usable", check.unusable.empty()},

@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
-#include <vector>
 
 #include "app/cli/log/log_configuration.hpp"
 #include "app/config/option_text.hpp"

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "app/text/first_screen.hpp"
 #include "app/text/terminal.hpp"

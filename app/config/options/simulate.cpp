@@ -1,4 +1,3 @@
-#include <fmt/format.h>
 
 #include "app/config/option_builders.hpp"
 #include "app/config/options/sections.hpp"

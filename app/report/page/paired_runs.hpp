@@ -1,9 +1,8 @@
 #pragma once
 
 #include <string>
-#include <vector>
 
-#include "filter/judge/paired_gain.hpp"
+#include "filter/judge/finding.hpp"
 #include "io/archive/archive.hpp"
 
 namespace modebank::app::report {

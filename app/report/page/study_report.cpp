@@ -12,7 +12,6 @@
 #include "app/study/answers/merge_study.hpp"
 #include "app/study/answers/study_text.hpp"
 #include "app/study/space/study_plan.hpp"
-#include "io/archive/archive.hpp"
 #include "io/archive/inspect.hpp"
 #include "modebank/base/error.hpp"
 

@@ -1,7 +1,5 @@
 #include "app/study/answers/answers.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 
 #include "app/config/option_text.hpp"
 #include "app/study/answers/answer_tables.hpp"

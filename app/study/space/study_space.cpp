@@ -1,7 +1,6 @@
 #include "app/study/space/study_space.hpp"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <boost/random/uniform_01.hpp>

@@ -17,21 +17,12 @@ namespace modebank::learn {
 
 namespace {
 
-filter::Bank opaque(modebank::Bank bank) {
-  return filter::Bank(std::make_shared<const modebank::Bank>(std::move(bank)));
-}
-
-/// Copies one column per mode.
+/// One column per mode.
 template <class Column>
 Matrix columns(const modebank::Bank& bank, Column column) {
-  Matrix result;
-  for (const modebank::Mode& mode : bank.modes) {
-    const Eigen::VectorXd values = column(mode);
-    result.rows = values.size();
-    ++result.cols;
-    result.values.insert(result.values.end(), values.begin(), values.end());
-  }
-  return result;
+  Eigen::MatrixXd all(column(bank.modes.front()).size(), bank.mode_count());
+  for (Index k = 0; k < all.cols(); ++k) all.col(k) = column(bank.modes[static_cast<std::size_t>(k)]);
+  return to_matrix(all);
 }
 
 Uncertainty uncertainty_of(const modebank::Bank& bank) {
@@ -52,23 +43,17 @@ Uncertainty uncertainty_of(const modebank::Bank& bank) {
   return result;
 }
 
-LearningOptions learning_of(const LearnOptions& options, bool linear) {
-  LearningOptions learning;
-  learning.window = options.window;
-  learning.mixture = options.mixture;
-  learning.bank = options.bank;
-  learning.filter = options.filter;
-  learning.seed = options.seed;
-  const bool searched = options.search_lags && linear;
+/// Runs the chain of `modebank run`. `own`: the caller's motion model, or null.
+Learned learn_from(const Recording& recording, const LearnOptions& options, const MotionModel* own) {
+  LearningOptions learning{options.window, options.mixture, options.bank, options.filter, {}, options.seed};
+  const bool searched = options.search_lags && !own && is_linear(options.window);
   learning.searched_lags = {searched, searched, searched};
   learning.automatic_windows = {options.automatic_length, options.automatic_step};
   learning.competitors = false;  // this API does not return competitors
-  return learning;
-}
+  std::vector<const Eigen::VectorXd*> times;
+  for (const Trajectory& run : recording.runs) times.push_back(&run.time_s);
+  learning.one_model = step_scatter(times) > most_step_scatter;
 
-/// Runs the chain of `modebank run`. `own`: the caller's motion model, or null.
-Learned learn_from(const Recording& recording, const LearnOptions& options, const MotionModel* own) {
-  Learning learned;
   Origin origin;
   LearningHooks hooks;
   hooks.motion = own;
@@ -77,24 +62,18 @@ Learned learn_from(const Recording& recording, const LearnOptions& options, cons
     origin.objective = refined.objective;
     origin.measurement = refined.measurement;
   };
-  std::vector<const Eigen::VectorXd*> times;
-  for (const Trajectory& run : recording.runs) times.push_back(&run.time_s);
-  LearningOptions learning = learning_of(options, !own && is_linear(options.window));
-  learning.one_model = step_scatter(times) > most_step_scatter;
+  Learning learned;
   learn_all(recording, learning, Stage::bank, hooks, learned);
   origin.features = learned.mixture->feature_names;
   origin.mixture = from_internal(learned.mixture->mixture);
   origin.candidates = learned.mixture->candidates;
   origin.labels.assign(learned.mixture->labels.begin(), learned.mixture->labels.end());
   origin.screened = learned.bank->screened;
-  const double log_likelihood = training_log_likelihood(*learned.bank, recording, options.filter),
-               of_baseline = training_log_likelihood(*learned.baseline, recording, {FilterVariant::kf});
-  Uncertainty uncertainty = uncertainty_of(*learned.bank);
-  return {opaque(std::move(*learned.bank)),
-          opaque(std::move(*learned.baseline)),
-          log_likelihood,
-          of_baseline,
-          std::move(uncertainty),
+  return {filter::Bank(std::make_shared<const modebank::Bank>(*learned.bank)),
+          filter::Bank(std::make_shared<const modebank::Bank>(*learned.baseline)),
+          training_log_likelihood(*learned.bank, recording, options.filter),
+          training_log_likelihood(*learned.baseline, recording, {FilterVariant::kf}),
+          uncertainty_of(*learned.bank),
           std::move(origin)};
 }
 

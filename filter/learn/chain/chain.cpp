@@ -1,8 +1,5 @@
 #include "filter/learn/chain/chain.hpp"
 
-#include <fmt/format.h>
-
-#include <memory>
 #include <utility>
 
 #include "filter/judge/finding.hpp"
@@ -47,36 +44,33 @@ LearningOptions with_intercept(const Recording& recording, LearningOptions optio
   return options;
 }
 
-/// Sets the options that must be found from the data.
-LearningOptions found_in(const Recording& recording, LearningOptions options,
-                         const std::optional<FoundStructure>& structure) {
+/// The inputs of the stages after the search for a structure, which decides lags, length and step of windows.
+LearningInputs inputs_with(const std::optional<FoundStructure>& structure, const Recording& recording,
+                           LearningOptions options) {
   if (structure) options = with_structure(options, *structure, recording.input_count());
   if (options.automatic_windows.length) options.window.length = automatic_length(recording, options.window);
   if (options.automatic_windows.step) options.window.step = automatic_step(recording);
-  return options;
+  return learning_inputs(options);
 }
 
 /// The decisions of the last stage of learn_all, in their order.
 void learn_banks(const StageData& data, BankInputs inputs, const LearningHooks& hooks, Learning& learned) {
   static_cast<BankPart&>(learned) = {};
   if (learned.noise_only && !learned.noise_only->noise_factor.empty()) inputs.bank.em.noise_by_input = true;
-  const Stopwatch watch;
-  // Modes, their number, R, transitions: log score of left-out runs by the bank's own filter.
+  // Modes, their number, transitions: Hamilton's log score of left-out runs. R: that of the filter.
   Refinement refined = learn_modes(data, learned, inputs);
   hooks.refined(refined);
   if (inputs.bank.refine == Refine::em && !inputs.one_model) learned.unrefined = std::move(refined.start);
   learned.measured_fit = refined.measurement.end;
   learned.learned_transitions = refined.learned_transitions;
   learned.bank = std::move(refined.bank);
-  hooks.tell(Level::progress, fmt::format("bank: {} modes, {} removed as unusable, in {:.2f} s",
-                                          learned.bank->mode_count(), learned.bank->screened.size(), watch.seconds()));
   // One motion with switching noise: like the bank, and also from the bank's noises.
   Refinement one_motion;
   if (inputs.one_motion) {
     one_motion = learn_one_motion(data, learned, inputs);
     learned.one_motion = std::move(one_motion.bank);
   }
-  // What drifts, how fast, with which noise levels: causal log score of the training runs, one step ahead.
+  // How fast coefficients drift, with which noise levels: causal log score of the training runs, one step ahead.
   if (inputs.drifting) learned.drifting = learn_drifting(data, learned, inputs);
   // The first weights of the combination: scores of left-out runs at the asked horizons.
   if (inputs.one_motion)
@@ -96,14 +90,14 @@ void learn_all(const Recording& recording, const LearningOptions& asked, Stage l
   // left-out runs, one step ahead. Structure of drifting: causal log score of the training runs.
   const LearningOptions options = with_intercept(recording, asked);
   inputs = learning_inputs(options);
-  if (inputs.structure)
-    cached(Stage::structure, [&] { learned.structure = search_structure(recording, *inputs.structure, hooks.tell); });
-  else
+  if (!inputs.structure)
     learned.structure.reset();
+  else
+    cached(Stage::structure, [&] { learned.structure = search_structure(recording, *inputs.structure, hooks.tell); });
   if (last < Stage::windows) return;
 
   // Windows, whose length and step follow from the structure: robust least squares.
-  inputs = learning_inputs(found_in(recording, options, learned.structure));
+  inputs = inputs_with(learned.structure, recording, options);
   const auto named =
       hooks.motion ? nullptr : motion_model(inputs.windows, recording.state_count(), recording.input_count());
   const std::optional<Recording> part = learning_part(recording, inputs.competitors.em.transitions, asked.seed);
@@ -133,8 +127,7 @@ std::optional<Bank> Learning::bank_of(const std::string& filter) const {
   if (filter == "one_motion") return one_motion;
   if (filter == "nonlinear") return nonlinear;
   if (filter == "drifting") return drifting;
-  if (filter == combined_name && bank) return combined_frame(*bank);
-  return {};
+  return filter == combined_name && bank ? std::optional(combined_frame(*bank)) : std::nullopt;
 }
 
 std::vector<LearnedFilter> learned_filters(const Learning& learned, const FilterOptions& options) {

@@ -9,8 +9,6 @@
 #include "filter/judge/combination.hpp"
 #include "filter/learn/chain/inputs.hpp"
 #include "filter/learn/refine/refine.hpp"
-#include "filter/step/bank.hpp"
-#include "ident/model/local_model.hpp"
 #include "ident/model/motion_model.hpp"
 #include "mixture/select.hpp"
 
@@ -19,7 +17,7 @@ namespace modebank {
 // The results of each stage of learning. A result is absent if its stage did not run.
 
 struct StructurePart {
-  std::optional<FoundStructure> structure;  ///< result of the search for lags; absent without a search
+  std::optional<FoundStructure> structure;  ///< absent without a search
 };
 
 struct WindowsPart {
@@ -38,9 +36,8 @@ struct CompetitorsPart {
 
 struct BankPart {
   std::optional<Bank> bank;
-  std::optional<Bank> one_motion;  ///< `one_motion`: learned like the bank, with one theta
-  std::optional<Bank> drifting;    ///< one linear motion whose coefficients drift, with running noise that has the
-                                   ///< noise levels of `one_motion`
+  std::optional<Bank> one_motion;  ///< learned like the bank, with one theta
+  std::optional<Bank> drifting;    ///< one linear motion whose coefficients drift, with the noise levels of one_motion
   std::optional<Bank> unrefined;   ///< the bank before expectation-maximisation
   MeasuredFit measured_fit = MeasuredFit::none;
   Index learned_transitions = 0;  ///< number of transitions that refined the bank; 0 means all training transitions
@@ -51,7 +48,7 @@ struct BankPart {
 struct Learning : StructurePart, WindowsPart, MixturePart, CompetitorsPart, BankPart {
   bool terms_asked = false;  ///< whether terms of `nonlinear` were searched, even if none gained
 
-  /// The bank of the filter with this name, if it exists. For the combination, its combined_frame.
+  /// The bank of this filter, if it exists. For the combination, its combined_frame.
   std::optional<Bank> bank_of(const std::string& filter) const;
 };
 
@@ -84,21 +81,17 @@ std::string of_all(Index part, Index all);
 /// "from 200,000 of 2,500,000 training transitions".
 std::string learned_words(Index learned, Index all);
 
-/// Hooks of the caller, in addition to runs and options.
 struct LearningHooks {
-  /// Called for each stage in order, with the inputs of the stage. The hook either calls `compute`, or restores what an
-  /// earlier call with equal inputs computed.
+  /// Called for each stage in order: calls `compute`, or restores what an earlier call with equal inputs computed.
   std::function<void(Stage, const LearningInputs& inputs, const std::function<void()>& compute)> provide =
       [](Stage, const LearningInputs&, const std::function<void()>& compute) { compute(); };
   Tell tell = [](Level, const std::string&) {};
   std::function<void(const Refinement& bank)> refined = [](const Refinement&) {};  ///< called with each refined bank
-  const MotionModel* motion = nullptr;  ///< the caller's own motion model; if null, the motion model of window.model is
-                                        ///< used, if any
+  const MotionModel* motion = nullptr;  ///< the caller's own motion model; null: that of window.model, if any
 };
 
-/// Runs the stages in their only order, from runs to a bank. `learned` holds the results of earlier calls and receives
-/// the new ones. `last`: last stage, at most bank. Throws ConfigurationError for options that do not fit the data, and
-/// DataError for unusable data.
+/// Runs the stages in their only order, up to `last` (at most bank). `learned` holds the results of earlier calls and
+/// receives the new ones. Throws ConfigurationError for options that do not fit the data, DataError for unusable data.
 void learn_all(const Recording& recording, const LearningOptions& options, Stage last, const LearningHooks& hooks,
                Learning& learned);
 

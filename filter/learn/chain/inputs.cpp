@@ -5,8 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
-#include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/model/parameter_labels.hpp"
@@ -19,70 +19,52 @@ namespace {
 
 /// A free run needs enough measured samples at its start for the model.
 std::optional<StructureInputs> structure_inputs(const LearningOptions& options) {
-  if (!options.searched_lags.any()) return std::nullopt;
-  const bool one_model = options.one_model || options.filter.variant == FilterVariant::kf;
-  StructureInputs inputs{options.searched_lags, {}, !one_model};
-  inputs.window.seed = options.seed;
+  const SearchedLags& searched = options.searched_lags;
+  if (!searched.any()) return std::nullopt;
+  const FitOptions& given = options.window;
+  StructureInputs inputs{searched, {}, !options.one_model && options.filter.variant != FilterVariant::kf};
   inputs.searched.most_samples = options.scoring.free_run.samples;
-  const FitOptions& window = options.window;
-  if (!options.searched_lags.state) inputs.window.state_lags = window.state_lags;
-  if (!options.searched_lags.input) inputs.window.input_lags = window.input_lags;
-  if (!options.searched_lags.delay) inputs.window.input_delay = window.input_delay;
-  inputs.window.loss = window.loss;
-  inputs.window.loss_scale = window.loss_scale;
-  inputs.window.intercept = window.intercept;
-  inputs.window.centre = window.centre;
-  inputs.window.max_iterations = window.max_iterations;
-  return inputs;
-}
-
-/// Whether to look for noise that follows the input. All later steps must support such noise. The conditions are: an
-/// IMM; no logit; R is neither given nor estimated in addition to rounding.
-bool noise_may_follow(const LearningOptions& options, const FitOptions& window) {
-  const BankOptions& bank = options.bank;
-  return refinement_asked(bank, is_linear(window)) == Refine::em && bank.transition != TransitionSource::logit &&
-         !bank.measurement_variance && options.filter.variant == FilterVariant::imm;
-}
-
-CompetitorInputs competitor_inputs(const LearningOptions& options, const FitOptions& window) {
-  // A single Kalman filter is not compared with the competitors that are learned like a bank.
-  const bool rivals = options.filter.variant != FilterVariant::kf;
-  RefineOptions em = options.bank.em;
-  em.seed = options.seed;
-  return {window,
-          rivals ? options.terms : "none",
-          em,
-          options.other_lags,
-          noise_may_follow(options, window),
-          options.bank.measurement_variance,
-          options.competitors};
-}
-
-BankInputs bank_inputs(const LearningOptions& options, const FitOptions& window) {
-  const bool single = options.filter.variant == FilterVariant::kf;
-  BankInputs inputs{window, options.bank, options.other_lags, options.scoring.horizon,
-                    options.scoring.free_run.samples};
-  inputs.one_model = single || options.one_model;
-  inputs.one_motion = options.competitors && !single;
-  inputs.drifting = options.competitors;
-  inputs.terms_stated = lists_terms(options.terms);
-  inputs.bank.em.seed = options.seed;
-  inputs.bank.em.most_modes = most_components(options.mixture.selection);
-  inputs.bank.refine = refinement_asked(options.bank, is_linear(window));  // equal inputs must give equal keys
-  if (inputs.bank.refine == Refine::em && !inputs.one_model) inputs.filter = options.filter;
+  FitOptions& window = inputs.window;
+  if (!searched.state) window.state_lags = given.state_lags;
+  if (!searched.input) window.input_lags = given.input_lags;
+  if (!searched.delay) window.input_delay = given.input_delay;
+  window.loss = given.loss;
+  window.loss_scale = given.loss_scale;
+  window.intercept = given.intercept;
+  window.centre = given.centre;
+  window.max_iterations = given.max_iterations;
+  window.seed = options.seed;
   return inputs;
 }
 
 }  // namespace
 
 LearningInputs learning_inputs(const LearningOptions& options) {
-  FitOptions window = options.window;
+  const bool single = options.filter.variant == FilterVariant::kf;  // is not compared with what is learned like a bank
+  LearningInputs inputs{structure_inputs(options), options.window, {}, {}, {}};
+  FitOptions& window = inputs.windows;
   window.seed = options.seed;
-  return {structure_inputs(options),
-          window,
-          {window, options.mixture, options.seed},
-          competitor_inputs(options, window),
-          bank_inputs(options, window)};
+  inputs.mixture = {window, options.mixture, options.seed};
+
+  BankInputs& bank = inputs.bank;
+  bank = {window, options.bank, options.other_lags, options.scoring.horizon, options.scoring.free_run.samples};
+  bank.bank.refine = refinement_asked(options.bank, is_linear(window));  // equal inputs must give equal keys
+  bank.bank.em.seed = options.seed;
+  bank.one_model = single || options.one_model;
+  bank.one_motion = options.competitors && !single;
+  bank.drifting = options.competitors;
+  bank.terms_stated = lists_terms(options.terms);
+  if (bank.bank.refine == Refine::em && !bank.one_model) bank.filter = options.filter;
+
+  CompetitorInputs& competitors = inputs.competitors;
+  competitors = {window, single ? "none" : options.terms, bank.bank.em, options.other_lags};
+  // Noise that follows the input needs the support of all later steps.
+  competitors.noise_by_input = bank.bank.refine == Refine::em && options.bank.transition != TransitionSource::logit &&
+                               !options.bank.measurement_variance && options.filter.variant == FilterVariant::imm;
+  competitors.measurement_variance = options.bank.measurement_variance;
+  competitors.all = options.competitors;
+  bank.bank.em.most_modes = most_components(options.mixture.selection);
+  return inputs;
 }
 
 LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found, Index inputs) {
@@ -94,14 +76,12 @@ LearningOptions with_structure(const LearningOptions& of, const FoundStructure& 
   if (has_lags(window)) window.model = "varx";
   for (const StructureScore& s : found.scores) {
     const StageLags lags{s.state_lags, s.input_lags, found.delays_of(s)};
-    if (s.linear) options.other_lags.linear = lags;
-    if (s.linear && (s.noise_lags > 0 || s.differences)) {
-      const Index more = s.differences ? 1 : 0, of_inputs = inputs > 0 ? more : 0;
-      options.other_lags.linear = StageLags{s.state_lags + more, s.input_lags + of_inputs, lags.input_delay};
-      options.other_lags.armax = armax_of(s, found, inputs, window.intercept);
-    }
     if (s.one_motion) options.other_lags.one_motion = lags;
     if (s.drifting) options.other_lags.drifting = lags;
+    if (!s.linear) continue;
+    const Index more = s.differences ? 1 : 0;
+    options.other_lags.linear = {s.state_lags + more, s.input_lags + (inputs > 0 ? more : 0), lags.input_delay};
+    if (s.noise_lags > 0 || s.differences) options.other_lags.armax = armax_of(s, found, inputs, window.intercept);
   }
   return options;
 }
@@ -118,14 +98,12 @@ FilterOptions competitor_filter(const std::string& name) {
 void refuse_constant_states(const Recording& recording) {
   for (Index i = 0; i < recording.state_count(); ++i) {
     double least = INFINITY, largest = -least;
-    for (const Trajectory& run : recording.runs) {
-      if (run.role != Role::train) continue;
-      for (const double value : run.state.row(i)) {
-        if (!std::isfinite(value)) continue;
-        least = std::min(least, value);
-        largest = std::max(largest, value);
-      }
-    }
+    for (const Trajectory& run : recording.runs)
+      for (const double value : run.state.row(i))
+        if (run.role == Role::train && std::isfinite(value)) {
+          least = std::min(least, value);
+          largest = std::max(largest, value);
+        }
     if (least != largest) continue;
     throw DataError(
         fmt::format("the state {0} is constant: {1:g} in every sample of the training runs; nothing "
@@ -143,19 +121,17 @@ void refuse_unreached_horizons(const Recording& recording, const std::vector<Ind
   for (const Index horizon : horizons)
     if (longest && horizon > longest->transitions())
       throw DataError(fmt::format(
-          "filter.horizon = {} is too long for the {} runs; the longest, {}, has {} samples: choose at "
-          "most {}",
+          "filter.horizon = {} is too long for the {} runs; the longest, {}, has {} samples: choose at most {}",
           horizon, held_out ? "held-out" : "training", longest->run, longest->samples(), longest->transitions()));
 }
 
 std::string unidentifiable_effects(const Recording& recording, const LinearStructure& structure) {
-  const std::vector<Index> unidentifiable = unidentifiable_regressors(recording, structure);
-  if (unidentifiable.empty()) return {};
   std::vector<std::string> labels = regressor_labels(structure, names_of(recording.states), names_of(recording.inputs));
   labels.emplace_back("the intercept");
   std::vector<std::string> named;
-  for (const Index j : unidentifiable)
+  for (const Index j : unidentifiable_regressors(recording, structure))
     named.push_back((j < structure.dimension() ? "the state " : "") + labels[static_cast<std::size_t>(j)]);
+  if (named.empty()) return {};
   return fmt::format(
       "not identifiable from the training runs: the effect of {}, which {} throughout; the other parameters keep their "
       "standard errors",

@@ -1,18 +1,14 @@
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "filter/judge/free_run.hpp"
-#include "ident/data/trajectory.hpp"
+#include "filter/judge/horizon.hpp"
 #include "ident/fit/options.hpp"
 #include "ident/lag/structure.hpp"
-#include "modebank/base/names.hpp"
 #include "modebank/learn/options.hpp"
-#include "modebank/mixture/options.hpp"
 
 /// The options of learning, and the inputs of each stage. The key of a stored stage is made from its struct of inputs,
 /// field by field. So a stage cannot depend on anything outside its key.
@@ -30,25 +26,23 @@ struct EnumNames<Stage> {
 
 constexpr std::size_t index_of(Stage stage) { return static_cast<std::size_t>(stage); }
 
-/// Options for evaluating a filter. Options of the filter's steps are in FilterOptions.
+/// Options for evaluating a filter.
 struct ScoringOptions {
   static inline const std::vector<Eigen::Index> default_horizon{1, 10};
-  std::vector<Eigen::Index> horizon = default_horizon;  ///< horizons in samples; the summary already has horizon 1
-  FreeRunOptions free_run = {};                         ///< options of free runs, with the seed of the whole chain
-  std::uint64_t seed = 1;  ///< seed for the transforms of quantised measurements; the seed of the whole chain
+  std::vector<Eigen::Index> horizon = default_horizon;  ///< in samples; the summary already has horizon 1
+  FreeRunOptions free_run = {};                         ///< with the seed of the whole chain
+  std::uint64_t seed = 1;  ///< of the transforms of quantised measurements; the seed of the whole chain
 };
 
 /// Which options of windows are derived from the data (ident/fit/window_length.hpp).
 struct AutomaticWindows {
   bool length = false, step = false, intercept = false;
-
-  bool any() const { return length || step || intercept; }
 };
 
 /// Lags and delays of the stages. A stage without an entry has those of the windows.
 struct OtherLags {
-  std::optional<StageLags> linear = {};      ///< for `baseline`, `noise_only` and the search for terms
-  std::optional<StageLags> one_motion = {};  ///< for one motion with switching noise
+  std::optional<StageLags> linear = {};  ///< of `baseline`, `noise_only`, `nonlinear` and the search for its terms
+  std::optional<StageLags> one_motion = {};
   std::optional<StageLags> drifting = {};
   std::optional<ArmaxStructure> armax = {};  ///< of the linear stage: for `baseline`, in place of `linear`
 };
@@ -61,20 +55,16 @@ struct LearningOptions {
   FilterOptions filter = {};
   ScoringOptions scoring = {};
   std::uint64_t seed = 1;
-  SearchedLags searched_lags = {};          ///< which lags are chosen on runs that were left out; these replace the
-                                            ///< lags in `window`
-  AutomaticWindows automatic_windows = {};  ///< which values are derived from the data; these replace the values in
-                                            ///< `window`
-  std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for
-                                            ///< read_terms
+  SearchedLags searched_lags = {};          ///< which lags are chosen on left-out runs, in place of those in `window`
+  AutomaticWindows automatic_windows = {};  ///< which values are derived from the data, in place of those in `window`
+  std::string terms = "auto";               ///< terms of `nonlinear`: auto, none, or a list for read_terms
   OtherLags other_lags = {};
   bool competitors = true;  ///< if false, only the baseline is learned, and the bank is made from it
-  bool one_model = false;   ///< whether the bank is the baseline. This is set if the time steps differ much. Such steps
-                            ///< would make one motion look like several modes. Only least squares then preserves the
-                            ///< motion's time constant
+  /// Whether the bank is the baseline: if the time steps differ much, one motion looks like several modes, and only
+  /// least squares preserves its time constant.
+  bool one_model = false;
 };
 
-/// The inputs of the search for a structure.
 struct StructureInputs {
   SearchedLags searched;
   FitOptions window;       ///< the given lags, and how a model is fitted; all other fields have default values
@@ -92,8 +82,7 @@ struct CompetitorInputs {
   FitOptions window;
   std::string terms = "auto";  ///< terms of `nonlinear`
   RefineOptions em = {};       ///< how `nonlinear` is learned; its part of the runs is that of all competitors
-  OtherLags lags = {};         ///< without `linear`, `baseline`, `noise_only` and `nonlinear` have those of the windows
-
+  OtherLags lags = {};
   bool noise_by_input = false;                      ///< whether a factor on all noise may depend on state and input
   std::optional<double> measurement_variance = {};  ///< stated R of the linear stage's model
   bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
@@ -102,23 +91,20 @@ struct CompetitorInputs {
 /// Inputs of the bank, and of the competitors `one_motion` and `drifting`, which are learned after it.
 struct BankInputs {
   FitOptions window;
-  BankOptions bank;                 ///< bank options with the chain's seed; also those of `one_motion`
-  OtherLags lags = {};              ///< of `one_motion`, `drifting` and the linear stage
-  std::vector<Index> horizon = {};  ///< horizons at which left-out training runs are predicted, in addition to one
-                                    ///< sample ahead; `drifting` widens its predictions at these horizons
+  BankOptions bank;  ///< with the chain's seed; also of `one_motion`
+  OtherLags lags = {};
+  std::vector<Index> horizon = {};  ///< of predictions of left-out training runs, and of the factors of `drifting`
   Index simulate = 0;  ///< measured samples at the start of free runs; 0: none, so theta is of one step ahead
   std::optional<FilterOptions> filter = {};  ///< set if learning uses the filter, that is for refinement
   bool one_model = false;                    ///< whether the bank is the baseline
   bool one_motion = true;                    ///< false for a single Kalman filter
   bool drifting = true;                      ///< false if the bank has no competitors but the baseline
-  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given; if not, they are chosen on runs that were
-                              ///< left out
+  bool terms_stated = false;  ///< whether the terms of `nonlinear` are given, not chosen on left-out runs
 };
 
-/// The inputs of all stages of learning.
 struct LearningInputs {
   std::optional<StructureInputs> structure;  ///< empty if no lags are searched
-  FitOptions windows;                        ///< window options with the chain's seed
+  FitOptions windows;                        ///< with the chain's seed
   MixtureInputs mixture;
   CompetitorInputs competitors;
   BankInputs bank;
@@ -127,21 +113,20 @@ struct LearningInputs {
 /// Splits the options into the inputs of each stage.
 LearningInputs learning_inputs(const LearningOptions& options);
 
-/// The options with the found structure, marked as the result of a search.
+/// The options with the found structure, marked as the result of a search. `inputs`: number of input channels.
 LearningOptions with_structure(const LearningOptions& of, const FoundStructure& found, Index inputs);
 
 /// The structure of a row of the table, with the delays that were found for the inputs.
 ArmaxStructure armax_of(const StructureScore& row, const FoundStructure& found, Index inputs, bool intercept);
 
-/// Filter options of a competitor: its own kind of filter.
+/// A competitor has its own kind of filter.
 FilterOptions competitor_filter(const std::string& name);
 
-/// Throws DataError for a state that is constant in all training runs. Such a state contains no motion, and any filter
-/// predicts it without error.
+/// Throws DataError for a state that is constant in all training runs: any filter predicts it without error.
 void refuse_constant_states(const Recording& recording);
 
-/// Throws DataError for a given horizon (samples ahead) that is longer than the longest judged run. No sample could be
-/// scored at this horizon. Judged runs are the held-out runs; without held-out runs, they are the training runs.
+/// Throws DataError for a horizon (samples ahead) that is longer than the longest judged run, so that no sample could
+/// be scored. Judged are the held-out runs; without them, the training runs.
 void refuse_unreached_horizons(const Recording& recording, const std::vector<Index>& horizons);
 
 /// A message about regressors of the linear model that the training runs do not determine; empty if there is none.

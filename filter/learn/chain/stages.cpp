@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
-#include "filter/learn/from_mixture/memberships.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
+#include "filter/learn/from_mixture/training_transitions.hpp"
+#include "filter/learn/left_out/folds.hpp"
 #include "ident/fit/fit_windows.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/linearise.hpp"
@@ -17,6 +21,14 @@
 #include "ident/terms/term_rows.hpp"
 
 namespace modebank {
+namespace {
+
+template <class... Values>
+void progress(const Tell& tell, fmt::format_string<Values...> text, Values&&... values) {
+  tell(Level::progress, fmt::format(text, std::forward<Values>(values)...));
+}
+
+}  // namespace
 
 std::string of_all(Index part, Index all) {
   const auto grouped = [](Index count) {
@@ -32,30 +44,28 @@ std::string learned_words(Index learned, Index all) { return "from " + of_all(le
 
 WindowFits identify_windows(const StageData& data, const FitOptions& window, const MotionModel* own) {
   const Recording& recording = data.recording;
-  if (is_linear(window)) {
-    const std::string unidentifiable =
-        unidentifiable_effects(recording, linear_structure(recording.state_count(), recording.input_count(), window));
-    if (!unidentifiable.empty()) data.tell(Level::warning, unidentifiable);
-  }
+  const LinearStructure structure = linear_structure(recording.state_count(), recording.input_count(), window);
+  if (is_linear(window))
+    if (const std::string unidentifiable = unidentifiable_effects(recording, structure); !unidentifiable.empty())
+      data.tell(Level::warning, unidentifiable);
   const Stopwatch watch;
   WindowFits windows = own ? fit_windows(recording, window, *own) : fit_windows(recording, window);
-  data.tell(Level::progress, fmt::format("windows: {} fitted in {:.2f} s", windows.count(), watch.seconds()));
+  progress(data.tell, "windows: {} fitted in {:.2f} s", windows.count(), watch.seconds());
   return windows;
 }
 
 MixtureResult cluster(const StageData& data, const WindowFits& windows, const MixtureInputs& inputs) {
   const Stopwatch watch;
   MixtureResult found = cluster_windows(data.recording, windows, inputs.window, inputs.mixture, inputs.seed);
-  const std::string part =
-      found.compared > 0 ? ", candidates compared on " + of_all(found.compared, found.clustered) + "," : "";
-  data.tell(Level::progress, fmt::format("mixture: {} components from {} windows{} in {:.2f} s",
-                                         found.mixture.components(), found.clustered, part, watch.seconds()));
+  progress(data.tell, "mixture: {} components from {} windows{} in {:.2f} s", found.mixture.components(),
+           found.clustered,
+           found.compared > 0 ? ", candidates compared on " + of_all(found.compared, found.clustered) + "," : "",
+           watch.seconds());
   return found;
 }
 
 namespace {
 
-/// One linear model of the training runs.
 struct OneModel {
   std::string model;  ///< name of the windows' model, if that model has these lags
   LinearStructure structure;
@@ -64,17 +74,16 @@ struct OneModel {
 
 /// Fits one model with these lags. If no lags are given, uses those of the windows.
 OneModel one_model(const Recording& recording, const WindowFits& windows, const MotionModel* motion,
-                   const std::optional<StageLags>& lags) {
-  OneModel one{windows.model, windows.structure, {}};
+                   const std::optional<StageLags>& lags, bool constant = false) {
+  LinearStructure structure = windows.structure;
+  structure.intercept = structure.intercept || constant;
   if (lags) {
-    one.structure.state_lags = lags->state_lags;
-    one.structure.input_lags = lags->input_lags;
-    one.structure.input_delay = lags->input_delay;
+    structure.state_lags = lags->state_lags;
+    structure.input_lags = lags->input_lags;
+    structure.input_delay = lags->input_delay;
   }
-  const bool of_windows = one.structure == windows.structure;
-  one.global = of_windows ? linear_global(recording, windows, motion) : fit_global(recording, one.structure);
-  if (!of_windows) one.model = one.structure.lagged() ? "varx" : "linear";
-  return one;
+  if (structure == windows.structure) return {windows.model, structure, linear_global(recording, windows, motion)};
+  return {structure.lagged() ? "varx" : "linear", structure, fit_global(recording, structure)};
 }
 
 Bank single_filter(const Recording& recording, const OneModel& of, const CompetitorInputs& inputs, const Tell& tell) {
@@ -93,7 +102,7 @@ Bank single_filter(const Recording& recording, const OneModel& of, const Competi
   return std::move(baseline.bank);
 }
 
-/// The factor on the competitors' noise; empty if the noise has no factor.
+/// The factor on the competitors' noise, if it has one.
 NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
                          const Tell& tell) {
   if (!inputs.noise_by_input) return {};
@@ -104,29 +113,19 @@ NoiseFactor noise_factor(const Recording& recording, const LinearStructure& stru
       std::isnan(found.standard_error)
           ? fmt::format("gains {:.4f} nats/sample on the runs that chose it", found.gain)
           : fmt::format("gains {:.4f} +- {:.4f} nats/sample on left-out runs", found.gain, found.standard_error);
-  tell(Level::progress, fmt::format("noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
-                                    found.factor.empty() ? "not taken" : "taken", watch.seconds()));
+  progress(tell, "noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
+           found.factor.empty() ? "not taken" : "taken", watch.seconds());
   return std::move(found.factor);
 }
 
-/// Fits the terms given in the configuration, even if they do not gain.
+/// The terms given in the configuration, even if they do not gain.
 FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
   constexpr Index enough_rows = 200000;
   std::vector<std::string> names = state_names(recording, structure);
   for (const std::string& input : input_names(recording, structure)) names.push_back(input);
   const TermRows rows = gather_term_rows(recording, structure, enough_rows);
   require_transitions(rows.count() > 0);
-  FoundTerms found;
-  found.structure = structure;
-  found.terms = stated_terms(read_terms(terms), names, rows.X);
-  return found;
-}
-
-std::string gain_words(const FoundTerms& found) {
-  if (found.terms_asked > 0)
-    return fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
-                       found.terms_asked, found.gain, found.gain_standard_error);
-  return found.terms.empty() ? "no terms gain" : fmt::format("{} terms as configured", found.terms.count());
+  return {structure, stated_terms(read_terms(terms), names, rows.X)};
 }
 
 std::optional<Bank> nonlinear(const Recording& recording, LinearStructure structure, const CompetitorInputs& inputs,
@@ -142,24 +141,27 @@ std::optional<Bank> nonlinear(const Recording& recording, LinearStructure struct
   for (const TriedTerms& tried : found.tried)
     tell(Level::detail, fmt::format("nonlinear: {} terms with lags {}: {:.4f} nats/sample on left-out rows",
                                     tried.terms, lags_of(tried.structure), tried.log_score));
-  const std::string gain = gain_words(found);
+  std::string gain = found.terms.empty() ? "no terms gain" : fmt::format("{} terms as configured", found.terms.count());
+  if (found.terms_asked > 0)
+    gain = fmt::format("{} terms gain {:.4f} +- {:.4f} nats/sample on halves that did not choose them",
+                       found.terms_asked, found.gain, found.gain_standard_error);
   if (found.terms.empty()) {
-    tell(Level::progress, fmt::format("nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds()));
+    progress(tell, "nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds());
     return {};
   }
   RefineOptions em = inputs.em;
   em.noise_by_input = noise_by_input;
   Bank bank = learn_nonlinear(recording, found.structure, found.terms, em);
-  tell(Level::progress, fmt::format("nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain,
-                                    lags_of(found.structure), bank.mode_count(), watch.seconds()));
+  progress(tell, "nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain, lags_of(found.structure),
+           bank.mode_count(), watch.seconds());
   return bank;
 }
 
 }  // namespace
 
 Bank learn_single_filter(const StageData& data, const WindowFits& windows, const CompetitorInputs& inputs) {
-  return single_filter(data.recording, one_model(data.recording, windows, data.motion, inputs.lags.linear), inputs,
-                       data.tell);
+  const OneModel linear = one_model(data.recording, windows, data.motion, inputs.lags.linear);
+  return single_filter(data.recording, linear, inputs, data.tell);
 }
 
 CompetitorsPart learn_competitors(const StageData& data, const WindowFits& windows, const CompetitorInputs& inputs) {
@@ -178,58 +180,47 @@ CompetitorsPart learn_competitors(const StageData& data, const WindowFits& windo
 
 namespace {
 
-void tell_candidates(const Refinement& refined, const Tell& tell) {
+void tell_refinement(const Refinement& refined, const Tell& tell) {
   for (const RefineCandidate& c : refined.candidates)
     tell(Level::detail,
          fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
                      "below the best, after {} iterations{}",
                      c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
                      c.selected ? " (chosen)" : ""));
-}
-
-void tell_measurement(const Refinement& refined, const Tell& tell) {
-  const MeasurementStage& measured = refined.measurement;
-  if (measured.failed_starts > 0)
-    tell(Level::warning,
-         fmt::format("refine: {} of {} searches for R failed{}", measured.failed_starts, measured.starts,
-                     measured.failed_starts < measured.starts ? "; the best of the other searches is used"
-                                                              : ", so R = 0 is not certain"));
-  if (measured.starts > 0)
-    tell(Level::progress,
-         fmt::format("refine: searched for measurement noise from {} starts, in {:.2f} s{}", measured.starts,
-                     measured.seconds, refined.bank.R_standard_error.size() == 0 ? ": found none worth adding" : ""));
-  if (!std::isnan(measured.score))
-    tell(Level::progress,
-         fmt::format("refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample on left-out runs",
-                     measured.iterations, measured.score_before, measured.score));
-}
-
-void tell_additions(const Refinement& refined, const Tell& tell) {
+  const MeasurementStage& R = refined.measurement;
+  if (R.failed_starts > 0)
+    tell(Level::warning, fmt::format("refine: {} of {} searches for R failed{}", R.failed_starts, R.starts,
+                                     R.failed_starts < R.starts ? "; the best of the other searches is used"
+                                                                : ", so R = 0 is not certain"));
+  if (R.starts > 0)
+    progress(tell, "refine: searched for measurement noise from {} starts, in {:.2f} s{}", R.starts, R.seconds,
+             refined.bank.R_standard_error.size() == 0 ? ": found none worth adding" : "");
+  if (!std::isnan(R.score))
+    progress(tell, "refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample on left-out runs",
+             R.iterations, R.score_before, R.score);
   if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
-    tell(Level::progress,
-         fmt::format("refine: switching by state and input gains {:.4f} +- {:.4f} nats/sample on left-out runs{}",
-                     s.gain, s.gain_standard_error,
-                     s.width > 0.0 ? fmt::format(" (accepted, width {})", s.width) : ": not taken"));
+    progress(tell, "refine: switching by state and input gains {:.4f} +- {:.4f} nats/sample on left-out runs{}", s.gain,
+             s.gain_standard_error, s.width > 0.0 ? fmt::format(" (accepted, width {})", s.width) : ": not taken");
 }
 
 }  // namespace
 
 Refinement learn_modes(const StageData& data, const Learning& learned, const BankInputs& inputs) {
-  if (inputs.one_model) {
-    if (inputs.one_motion) data.tell(Level::progress, "bank: equals baseline, because the time steps differ too much");
-    return {*learned.baseline, {}, {}, {}, {}};
-  }
-  Refinement refined = learn_as_asked(data.recording, *learned.windows, *learned.mixture, inputs.bank,
-                                      learned.baseline->R, inputs.filter, data.motion);
-  if (inputs.bank.refine == Refine::none)
-    data.tell(Level::progress,
-              fmt::format("bank: modes of model {} come from the mixture, without refinement", learned.windows->model));
-  tell_candidates(refined, data.tell);
-  tell_measurement(refined, data.tell);
-  tell_additions(refined, data.tell);
+  const Stopwatch watch;
+  Refinement refined{*learned.baseline, {}, {}, {}, {}};
+  if (!inputs.one_model)
+    refined = learn_as_asked(data.recording, *learned.windows, *learned.mixture, inputs.bank, learned.baseline->R,
+                             inputs.filter, data.motion);
+  if (inputs.one_model && inputs.one_motion)
+    data.tell(Level::progress, "bank: equals baseline, because the time steps differ too much");
+  if (!inputs.one_model && inputs.bank.refine == Refine::none)
+    progress(data.tell, "bank: modes of model {} come from the mixture, without refinement", learned.windows->model);
+  tell_refinement(refined, data.tell);
   if (const Index learned_from = refined.learned_transitions; learned_from > 0)
     data.tell(Level::progress,
               "refine: learned " + learned_words(learned_from, data.recording.transitions(Role::train)));
+  progress(data.tell, "bank: {} modes, {} removed as unusable, in {:.2f} s", refined.bank.mode_count(),
+           refined.bank.screened.size(), watch.seconds());
   return refined;
 }
 
@@ -239,33 +230,108 @@ Refinement learn_one_motion(const StageData& data, const Learning& learned, cons
   const Recording& recording = data.part;
   const WindowFits& windows = *learned.windows;
   const OneModel one = one_model(recording, windows, data.motion, inputs.lags.one_motion);
-  WindowFits own;
-  own.structure = one.structure;
-  Refinement refined = learn_one_motion(recording, one.structure == windows.structure ? windows : own, one.global,
-                                        *learned.bank, learned.baseline->R,
+  WindowFits frame;
+  frame.structure = one.structure;
+  frame.global = one.global;
+  if (one.structure == windows.structure) {
+    frame.length = windows.length;
+    frame.step = windows.step;
+    if (windows.model_parameters.empty()) frame.prior_sd = windows.prior_sd;  // else of other parameters
+  }
+  Refinement refined = learn_one_motion(recording, frame, *learned.bank, learned.baseline->R,
                                         std::max(fewest_levels, learned.mixture->mixture.components()), inputs.bank);
-  const Index horizon = *std::max_element(inputs.horizon.begin(), inputs.horizon.end());
+  const Index horizon = *std::ranges::max_element(inputs.horizon);
   if (inputs.simulate > 0 && horizon > 1 && fit_horizon(recording, inputs.bank.em, horizon, inputs.simulate, refined))
-    data.tell(Level::progress, fmt::format("one_motion: errors up to {} samples ahead fit free runs better", horizon));
-  data.tell(Level::progress,
-            fmt::format("one_motion: {} noise levels in {:.2f} s", refined.bank.mode_count(), watch.seconds()));
+    progress(data.tell, "one_motion: errors up to {} samples ahead fit free runs better", horizon);
+  progress(data.tell, "one_motion: {} noise levels in {:.2f} s", refined.bank.mode_count(), watch.seconds());
   return refined;
 }
 
 Bank learn_drifting(const StageData& data, const Learning& learned, const BankInputs& inputs) {
   const Stopwatch watch;
   const Recording& recording = data.part;
-  const OneModel of = one_model(recording, *learned.windows, data.motion, inputs.lags.drifting);
-  Bank bank = learn_likeliest_drifting(recording, of.global, of.structure, inputs.horizon);
+  const bool level_wanders = inputs.lags.armax && inputs.lags.armax->order.differences;
+  const OneModel of = one_model(recording, *learned.windows, data.motion, inputs.lags.drifting, level_wanders);
+  Bank bank = learn_drifting(recording, of.global, of.structure, inputs.horizon);
   if (learned.one_motion) bank = with_noise_levels(bank, *learned.one_motion, recording, inputs.horizon);
   const DriftRates& rates = bank.drift.rates;
   const RunningNoise& noise = bank.running_noise;
-  data.tell(Level::progress,
-            fmt::format(
-                "drifting: {} with {} lags, {} noise levels, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
-                name_of(bank.drift.wandering), bank.structure.state_lags, noise.levels(), rates.q, rates.p0, rates.leak,
-                noise.lam, noise.nu, watch.seconds()));
+  progress(data.tell, "drifting: {} lags, {} noise levels, q {:g}, p0 {:g}, leak {:g}, lam {:g}, nu {:g} in {:.2f} s",
+           bank.structure.state_lags, noise.levels(), rates.q, rates.p0, rates.leak, noise.lam, noise.nu,
+           watch.seconds());
   return bank;
+}
+
+namespace {
+
+/// Chooses the terms again, because terms score too well on the runs that chose them. If the split's runs give no
+/// terms, those of all training runs are fitted to them.
+Bank relearn_nonlinear(const Learning& learned, const Recording& training, const BankInputs& inputs) {
+  LinearStructure structure = learned.baseline->structure;
+  structure.intercept = inputs.window.intercept;  // a model of differences has none
+  structure.centre.clear();                       // terms are functions of the values themselves
+  const FoundTerms found = inputs.terms_stated ? FoundTerms() : find_terms(training, structure, inputs.window);
+  if (found.terms.empty())
+    return learn_nonlinear(training, learned.nonlinear->structure, learned.nonlinear->terms, inputs.bank.em);
+  return learn_nonlinear(training, found.structure, found.terms, inputs.bank.em);
+}
+
+/// The filters learned without the left-out runs of a split. Not learned again: Q and R of a baseline that is not of
+/// the linear stage, and the rates of `drifting`.
+Learning learned_on(const Learning& learned, const Recording& training, const BankInputs& inputs, const Bank& bank,
+                    const Bank& one_motion) {
+  Learning anew;
+  anew.bank = bank;
+  anew.one_motion = one_motion;
+  if (inputs.lags.armax) anew.baseline = learn_armax(training, *inputs.lags.armax, inputs.bank.measurement_variance);
+  if (!anew.baseline && learned.baseline) {
+    anew.baseline = learned.baseline;
+    const LinearStructure& structure = anew.baseline->structure;
+    anew.baseline->modes.front().model = unpack(structure, fit_global(training, structure).theta);
+  }
+  if (learned.noise_only) {
+    const LinearStructure& structure = learned.noise_only->structure;
+    const NoiseFactor factor =
+        learned.noise_only->noise_factor.empty() ? NoiseFactor() : fit_noise_factor(training, structure);
+    anew.noise_only = noise_only_beside(*anew.baseline, inputs.lags.armax.has_value(), training, structure, factor);
+  }
+  if (learned.drifting)
+    anew.drifting = relearn_drifting(*learned.drifting, training, fit_global(training, learned.drifting->structure));
+  if (learned.nonlinear) anew.nonlinear = relearn_nonlinear(learned, training, inputs);
+  return anew;
+}
+
+}  // namespace
+
+std::vector<LeftOutRow> score_left_out(const StageData& data, const Learning& learned, const BankInputs& inputs,
+                                       const std::vector<Bank>& banks, const std::vector<Bank>& one_motions) {
+  if (!inputs.filter) return {};
+  const Stopwatch watch;
+  const std::vector<ValidationSplit> splits = validation_splits(data.part, inputs.bank.em.folds);
+  if (splits.empty() || banks.size() != splits.size() || one_motions.size() != splits.size()) return {};
+  std::vector<Index> horizons = inputs.horizon;
+  horizons.push_back(1);
+  std::vector<std::vector<LearnedFilter>> filters(splits.size());
+  tbb::parallel_for(std::size_t{0}, splits.size(), [&](std::size_t s) {
+    filters[s] =
+        learned_filters(learned_on(learned, splits[s].training, inputs, banks[s], one_motions[s]), *inputs.filter);
+  });
+  std::vector<std::string> names;
+  for (const LearnedFilter& one : filters.front()) names.push_back(one.name);
+  std::vector<std::vector<HorizonEvaluation>> forecasts(names.size());
+  for (std::size_t s = 0; s < splits.size(); ++s)
+    for (std::size_t f = 0; f < names.size(); ++f) {
+      const std::vector<Trajectory>& runs = splits[s].left_out.runs;
+      const std::size_t first = forecasts[f].size();
+      forecasts[f].resize(first + runs.size());
+      tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t r) {
+        const LearnedFilter& one = filters[s][f];
+        forecasts[f][first + r] = evaluate_horizons(one.bank, runs[r], one.options, horizons);
+      });
+    }
+  progress(data.tell, "left out: scored {} filters on training runs, each learned without the scored run, in {:.2f} s",
+           names.size(), watch.seconds());
+  return left_out_rows(names, forecasts);
 }
 
 }  // namespace modebank

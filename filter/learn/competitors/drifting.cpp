@@ -1,14 +1,15 @@
-// The competitor `drifting`: its settings, what drifts, and its noise levels.
+// The competitor `drifting` (method: section 6): the scores of its settings, their choice, and its noise levels.
+#include "filter/step/drifting.hpp"
+
 #include <tbb/parallel_for.h>
 
-#include <Eigen/Core>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
-#include <vector>
+#include <set>
+#include <stdexcept>
+#include <utility>
 
 #include "filter/judge/horizon.hpp"
 #include "filter/learn/competitors/competitors.hpp"
@@ -17,114 +18,197 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 #include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
+#include "filter/step/bank_filter.hpp"
 #include "filter/step/noise_density.hpp"
-#include "ident/data/stretch.hpp"
-#include "ident/fit/global_model.hpp"
+#include "filter/step/samples.hpp"
+#include "ident/base/work_counter.hpp"
 #include "ident/model/transitions.hpp"
 #include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
 
-/// Root mean square of every regressor over the training transitions, with equal weights; 1 if a regressor is always
-/// zero.
-Eigen::VectorXd regressor_scale(const Recording& recording, const LinearStructure& structure) {
+struct TrainingRun {
+  const Trajectory& trajectory;
+  RunInstants instants;
+};
+
+/// Inputs of all running variances and densities for one (q, p0, leak): e^2 / (1 + h'Ph), divided by v0, of each scored
+/// signal, by output. `restart`: the filter starts, and so does the running variance.
+struct DriftTrace {
+  static constexpr double restart = -1.0;
+  std::vector<std::vector<double>> ratio;
+  double log_variance = 0.0;  ///< sum of log (v0 (1 + h'Ph)) over all scored signals
+  Index samples = 0;
+};
+
+DriftTrace trace_drift(Bank bank, const DriftRates& rates, const std::vector<TrainingRun>& runs) {
+  bank.drift.rates = rates;
+  const Eigen::VectorXd v0 = bank.noise_variance();
+  DriftTrace trace{std::vector<std::vector<double>>(static_cast<std::size_t>(v0.size()))};
+  DriftingFilter filter(bank);
+  for (const TrainingRun& run : runs)
+    for (Index t = 0; t < run.instants.count(); ++t) {
+      const bool scored = !std::isnan(follow(run.instants, t, run.trajectory, filter));
+      trace.samples += scored ? 1 : 0;
+      for (Index i = 0; i < v0.size(); ++i) {
+        std::vector<double>& ratio = trace.ratio[static_cast<std::size_t>(i)];
+        if (run.instants.instants[static_cast<std::size_t>(t)].starts) ratio.push_back(DriftTrace::restart);
+        const double e = filter.innovation()(i), growth = filter.growth(i);
+        if (!scored || std::isnan(e)) continue;
+        ratio.push_back(e * e / growth / v0(i));
+        trace.log_variance += std::log(v0(i)) + std::log(growth);
+      }
+    }
+  return trace;
+}
+
+/// Sums of log densities for all (lam, nu, floor), floor fastest. Running variances of all (lam, floor) are in units of
+/// v0.
+void score_trace(const DriftTrace& trace, const DriftingGrid& grid, Eigen::Ref<Eigen::VectorXd> sums) {
+  const Index floors = std::ssize(grid.floor), pairs = std::ssize(grid.lam) * floors;
+  Eigen::ArrayXd floor(pairs), keep(pairs), v(pairs), square(pairs), log_variance = Eigen::ArrayXd::Zero(pairs);
+  for (Index i = 0; i < pairs; ++i) {
+    floor(i) = grid.floor[static_cast<std::size_t>(i % floors)];
+    keep(i) = grid.lam[static_cast<std::size_t>(i / floors)];
+  }
+  const std::vector<StudentNoise> noises(grid.nu.begin(), grid.nu.end());
+  // per nu: sums of log (1 + z^2 / (nu - 2)); of z^2 for the normal distribution
+  Eigen::ArrayXXd tail = Eigen::ArrayXXd::Zero(pairs, std::ssize(noises));
+  double signals = 0.0;
+  for (const std::vector<double>& of_output : trace.ratio)
+    for (const double ratio : of_output) {
+      if (ratio == DriftTrace::restart) {
+        v.setOnes();
+        continue;
+      }
+      square = ratio / v;
+      log_variance += v.log();
+      for (Index d = 0; const StudentNoise& noise : noises) {
+        if (noise.gaussian())
+          tail.col(d++) += square;
+        else
+          tail.col(d++) += (1.0 + square / (noise.degrees() - 2.0)).log();
+      }
+      v = (keep * v + (1.0 - keep) * ratio).max(floor);
+      ++signals;
+    }
+  for (Index d = 0; const StudentNoise& noise : noises) {
+    const double weight = noise.gaussian() ? 0.5 : 0.5 * (noise.degrees() + 1.0);
+    const Eigen::ArrayXd sum = signals * noise.log_constant() - 0.5 * log_variance - weight * tail.col(d);
+    for (Index i = 0; i < pairs; ++i) sums((i / floors * tail.cols() + d) * floors + i % floors) = sum(i);
+    ++d;
+  }
+  sums.array() -= 0.5 * trace.log_variance;
+}
+
+}  // namespace
+
+std::array<double, 6> DriftingGrid::point(Index index) const {
+  const std::array settings{&q, &p0, &leak, &lam, &nu, &floor};
+  std::array<double, 6> at{};
+  for (std::size_t i = settings.size(); i-- > 0; index /= std::ssize(*settings[i]))
+    at[i] = (*settings[i])[static_cast<std::size_t>(index % std::ssize(*settings[i]))];
+  return at;
+}
+
+Index DriftingScores::best() const { return std::ranges::max_element(log_score, is_below) - log_score.begin(); }
+
+DriftingScores score_drifting_grid(const Bank& start, const Recording& recording, const DriftingGrid& grid) {
+  const Index drifts = std::ssize(grid.q) * std::ssize(grid.p0) * std::ssize(grid.leak),
+              rest = std::ssize(grid.lam) * std::ssize(grid.nu) * std::ssize(grid.floor);
+  if (drifts * rest == 0) throw std::invalid_argument("the drifting model's grid has a setting without values");
+  std::vector<TrainingRun> runs;
+  for (const Trajectory& run : recording.runs) {
+    if (run.role != Role::train) continue;
+    check_run(start, run);
+    runs.push_back({run, RunInstants(start, run)});
+  }
+  DriftingScores scores{Eigen::VectorXd(drifts * rest), 0};
+  WorkCounter counter("settings of the drifting model", static_cast<std::size_t>(drifts));
+  tbb::parallel_for(Index{0}, drifts, [&](Index d) {
+    counter.add();
+    const std::array<double, 6> at = grid.point(d * rest);
+    const DriftTrace trace = trace_drift(start, {at[0], at[1], at[2]}, runs);
+    score_trace(trace, grid, scores.log_score.segment(d * rest, rest));
+    if (d == 0) scores.samples = trace.samples;
+  });
+  if (scores.samples == 0) throw DataError("no training run has a sample on which a drifting model can be scored");
+  scores.log_score /= static_cast<double>(scores.samples);
+  return scores;
+}
+
+namespace {
+
+/// The model with theta0, v0 and the root mean squares of the regressors, whose other settings are to be chosen.
+Bank undecided_bank(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
   const Transitions transitions = stack_training(recording, structure);
   require_transitions(transitions.count() > 0);
   const Eigen::VectorXd scale =
       (transitions.regressors.colwise().squaredNorm() / static_cast<double>(transitions.count())).cwiseSqrt();
-  return scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });
-}
-
-constexpr Index factors_below = 16, factors_above = 32;  // index of the grid 2^(i / 4) of a horizon's factor
-
-Bank undecided_bank(const Recording& recording, const GlobalModel& global, const LinearStructure& structure) {
-  const Index n = structure.states;
-  const Bank frame = bank_frame(recording, structure, Eigen::MatrixXd::Zero(n, n));
   Bank bank = one_mode_bank(structure, global.theta, global.noise_variance().unaryExpr(&positive_variance));
   bank.model = "varx";
-  bank.state_names = frame.state_names;
-  bank.input_names = frame.input_names;
-  bank.dt_s = frame.dt_s;
-  bank.drift.scale = regressor_scale(recording, structure);
+  bank.state_names = state_names(recording, structure);
+  bank.input_names = input_names(recording, structure);
+  bank.dt_s = training_part(recording).median_period_s();
+  bank.drift.scale = scale.unaryExpr([](double rms) { return rms > 0.0 ? rms : 1.0; });
   bank.running_noise.floor = bank.noise_variance();
   bank.quantum = recording.quantum;
   return bank;
 }
 
-void take_own_variance(Bank& bank, const Recording& recording) {
-  const DriftingGrid grid = coarse_drifting_grid();
-  const DriftingScores scores = score_drifting_grid(bank, recording, grid);
-  const Index drift = scores.best() / (std::ssize(grid.lam) * std::ssize(grid.nu) * std::ssize(grid.floor));
-  bank.noise_variance().array() *= scores.error_ratio.col(drift).array();
-  bank.noise_variance() = bank.noise_variance().unaryExpr(&positive_variance).eval();
+/// The bank with these values of q, p0, leak, lam, nu, floor, and of the running variance at a start as a share of v0.
+/// P, q, the levels and the floor are in units of v, so such a share is the same as levels of this share.
+Bank with_settings(Bank bank, const std::array<double, 6>& at, double share = 1.0) {
+  bank.drift.rates = {share * at[0], share * at[1], at[2]};
+  bank.running_noise.lam = at[3];
+  bank.running_noise.nu = at[4];
+  bank.running_noise.floor = at[5] / share * bank.noise_variance();
+  bank.running_noise.level *= share;
+  return bank;
 }
 
-void settle(Bank& bank, const DriftingGrid& grid, const DriftingScores& scores) {
-  const Index best = scores.best();
-  const std::array<Index, 6> at = grid.point(best);
-  const auto chosen = [&](const std::vector<double>& values, std::size_t i) {
-    return values[static_cast<std::size_t>(at[i])];
-  };
-  bank.drift.rates = {chosen(grid.q, 0), chosen(grid.p0, 1), chosen(grid.leak, 2)};
-  bank.running_noise.lam = chosen(grid.lam, 3);
-  bank.running_noise.nu = chosen(grid.nu, 4);
-  bank.running_noise.floor = (chosen(grid.floor, 5) * bank.noise_variance()).cwiseMax(bank.rounding_variance());
-  bank.drift.tuning = {scores.log_score(best), scores.samples};
-}
-
-/// Errors of predictions per training run and horizon.
-using TrainingErrors = std::vector<std::vector<LevelErrors>>;
-
-/// The grid position of the factor that makes the errors most likely. If several are equally likely, the nearest to
-/// factor 1.
-Index best_factor(const StudentNoise& noise, const TrainingErrors& runs, std::size_t horizon) {
-  const auto gain = [&](Index i) {
-    const double factor = std::exp2(0.25 * static_cast<double>(i));
-    double sum = 0.0;
-    for (const std::vector<LevelErrors>& run : runs)
-      for (Index k = 0; k < run[horizon].whitened.cols(); ++k)
-        if (!std::isnan(run[horizon].whitened(0, k))) sum += run[horizon].widening_gain(noise, k, factor);
-    return sum;
-  };
-  Index best = 0;
-  double most = 0.0;  // log density with factor 1
-  for (Index away = 1; away <= factors_above; ++away)
-    for (const Index i : {away, -away}) {
-      if (i < -factors_below) continue;
-      if (const double value = gain(i); value > most) {
-        most = value;
-        best = i;
-      }
-    }
-  return best;
-}
-
-/// Chooses the variance's factor of each horizon from 2 on, as learn_drifting.
-void choose_horizon_factors(Bank& bank, const Recording& recording, std::vector<Index> horizons) {
+/// Chooses the variance's factor of each horizon from 2 on, as learn_drifting. If several are equally likely, the
+/// nearest to factor 1.
+void choose_horizon_factors(Bank& bank, const Recording& recording, const std::vector<Index>& asked) {
+  constexpr Index below = 16, above = 32;
   bank.running_noise.horizon_factor.clear();
-  std::erase(horizons, Index{1});
-  std::sort(horizons.begin(), horizons.end());
-  horizons.erase(std::unique(horizons.begin(), horizons.end()), horizons.end());
-  if (horizons.empty()) return;
+  std::set<Index> ordered(asked.begin(), asked.end());
+  ordered.erase(1);
+  if (ordered.empty()) return;
+  const std::vector<Index> horizons(ordered.begin(), ordered.end());
   const std::vector<Trajectory> runs = training_part(recording).runs;
-  TrainingErrors errors(runs.size());
+  std::vector<std::vector<LevelErrors>> errors(runs.size());
   tbb::parallel_for(std::size_t{0}, runs.size(),
                     [&](std::size_t i) { errors[i] = level_errors(bank, runs[i], horizons); });
   const StudentNoise noise(bank.running_noise.nu);
-  for (std::size_t h = 0; h < horizons.size(); ++h)
-    bank.running_noise.horizon_factor.emplace_back(
-        horizons[h], std::exp2(0.25 * static_cast<double>(best_factor(noise, errors, h))));
+  for (std::size_t h = 0; h < horizons.size(); ++h) {
+    double best = 1.0, most = 0.0;  // factor, and what it adds to the log density
+    for (Index away = 1; away <= above; ++away)
+      for (const Index i : {away, -away}) {
+        if (i < -below) continue;
+        const double factor = std::exp2(0.25 * static_cast<double>(i));
+        double gain = 0.0;
+        for (const std::vector<LevelErrors>& run : errors)
+          for (Index k = 0; k < run[h].whitened.cols(); ++k)
+            if (!std::isnan(run[h].whitened(0, k))) gain += run[h].widening_gain(noise, k, factor);
+        if (!(gain > most)) continue;
+        most = gain;
+        best = factor;
+      }
+    bank.running_noise.horizon_factor.emplace_back(horizons[h], best);
+  }
 }
 
 }  // namespace
 
 Bank learn_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                    const std::vector<Index>& horizons, const DriftingGrid& grid, Wandering wandering) {
+                    const std::vector<Index>& horizons, const DriftingGrid& grid) {
   Bank bank = undecided_bank(recording, global, structure);
-  bank.drift.wandering = wandering;
-  if (wandering == Wandering::gain) take_own_variance(bank, recording);
-  settle(bank, grid, score_drifting_grid(bank, recording, grid));
+  const DriftingScores scores = score_drifting_grid(bank, recording, grid);
+  bank = with_settings(bank, grid.point(scores.best()));
+  bank.running_noise.floor = bank.running_noise.floor.cwiseMax(bank.rounding_variance());
+  bank.drift.tuning = {scores.log_score(scores.best()), scores.samples};
   choose_horizon_factors(bank, recording, horizons);
   return bank;
 }
@@ -133,160 +217,55 @@ Bank relearn_drifting(const Bank& like, const Recording& recording, const Global
   const Bank own = undecided_bank(recording, global, like.structure);
   Bank bank = like;
   bank.modes.front().model = own.modes.front().model;
-  bank.drift.scale = own.drift.scale;
-  if (like.drift.wandering == Wandering::gain) return bank;  // the variance of this model comes from its own errors
-  const Eigen::ArrayXd share = like.running_noise.floor.array() / like.noise_variance().array();
-  bank.running_noise.floor = share * own.noise_variance().array();
   bank.modes.front().Q = own.modes.front().Q;
+  bank.drift.scale = own.drift.scale;
+  bank.running_noise.floor.array() *= own.noise_variance().array() / like.noise_variance().array();
   return bank;
 }
 
 namespace {
-
-constexpr Index most_asked_transitions = 20000;
-constexpr double least_wandering_gain = 0.02;  // [nats/sample]
-
-struct Wanderer {
-  LinearStructure structure;
-  Wandering wandering;
-};
-
-/// The candidates. The first one is kept if no other candidate gains.
-std::vector<Wanderer> candidates_of(const LinearStructure& structure) {
-  const LinearStructure one_lag = structure.with_one_lag();
-  std::vector<Wanderer> candidates{{structure, Wandering::all}};
-  if (one_lag != structure) candidates.push_back({one_lag, Wandering::all});
-  for (const Wanderer& with : std::vector<Wanderer>(candidates)) {
-    LinearStructure constant = with.structure;
-    constant.intercept = true;
-    candidates.push_back({constant, Wandering::constant});
-    if (with.structure.inputs > 0) candidates.push_back({with.structure, Wandering::gain});
-  }
-  return candidates;
-}
-
-}  // namespace
-
-DriftingGrid coarse_drifting_grid() {
-  return {{0.0, 1e-4, 1e-3, 1e-2}, {0.0, 1e-2, 1.0}, {1.0, 0.97}, {0.7, 0.85, 0.93, 0.97}, {0.0, 4.0, 10.0}, {1e-3}};
-}
-
-double drifting_training_score(const Recording& recording, Index latest, const LinearStructure& structure,
-                               const DriftingGrid& grid, Wandering wandering) {
-  const Recording part = from_common_start(recording, latest - structure.first_transition());
-  try {
-    return learn_drifting(part, fit_global(part, structure), structure, {1}, grid, wandering).drift.tuning.log_score;
-  } catch (const DataError&) {
-    return -std::numeric_limits<double>::infinity();
-  }
-}
-
-Bank learn_likeliest_drifting(const Recording& recording, const GlobalModel& global, const LinearStructure& structure,
-                              const std::vector<Index>& horizons) {
-  const std::optional<Recording> fewer = learning_part(recording, most_asked_transitions, 1);
-  const std::vector<Wanderer> candidates = candidates_of(structure);
-  const Wanderer* chosen = &candidates.front();
-  DriftingGrid grid = coarse_drifting_grid();
-  grid.p0.push_back(10.0);  // each run learns its own coefficients, so differences between runs do not change this
-                            // comparison
-  double best = -std::numeric_limits<double>::infinity();
-  for (const Wanderer& candidate : candidates) {
-    const double score = drifting_training_score(fewer ? *fewer : recording, structure.first_transition(),
-                                                 candidate.structure, grid, candidate.wandering);
-    if (!(score > best)) continue;
-    best = &candidate == &candidates.front() ? score + least_wandering_gain : score;
-    chosen = &candidate;
-  }
-  if (chosen == &candidates.front()) return learn_drifting(recording, global, structure, horizons);
-  return learn_drifting(recording, fit_global(recording, chosen->structure), chosen->structure, horizons, {},
-                        chosen->wandering);
-}
-
-namespace {
-
-/// Position of a setting on its grid, in the order q, p0, leak, lam, nu, floor, start. `start` is the running variance
-/// at a start, as a share of v0.
-using Point = std::array<std::size_t, 7>;
-
-std::array<std::vector<double>, 7> grids() {
-  const DriftingGrid grid;
-  return {grid.q, {1e-2, 1e-1, 1.0, 10.0, 100.0}, grid.leak, grid.lam, grid.nu, grid.floor, {0.1, 0.3, 1.0}};
-}
 
 /// The training score, one sample ahead. `samples`: those that a filter of this structure scores.
 GridTuning scored(const Bank& bank, const Recording& training, Index samples) {
   return {training_log_likelihood(bank, training, {}) / static_cast<double>(samples), samples};
 }
 
-Index scored_samples(const Bank& bank, const Recording& training) {
-  Index samples = 0;
-  for (const Trajectory& run : training.runs)
-    if (run.role == Role::train) samples += (!log_densities(bank, run, {}).array().isNaN()).count();
-  return samples;
-}
+using Point = std::array<std::size_t, 7>;  ///< positions of the settings of with_settings on their grids
 
-/// Climbs along one setting after another to the highest training score.
-class Climb {
- public:
-  /// `frame`: a model with levels whose settings are ignored.
-  Climb(const Bank& frame, const Recording& training, Index samples)
-      : frame_(frame), training_(training), samples_(samples), grids_(grids()) {}
-
-  void from(Point at) {
-    constexpr double least_climb = 1e-5;  // [nats/sample]
+/// The best model that climbs along one setting after another find, by the training score. `frame`: a model with levels
+/// whose settings are ignored.
+Bank climb(const Bank& frame, const Recording& training, Index samples, const std::vector<Point>& starts) {
+  constexpr double least_climb = 1e-5;  // [nats/sample]
+  const DriftingGrid g;
+  const std::array<std::vector<double>, 7> grids{
+      g.q, {1e-2, 1e-1, 1.0, 10.0, 100.0}, g.leak, g.lam, g.nu, g.floor, {0.1, 0.3, 1.0}};
+  const auto model = [&](const Point& at) {
+    std::array<double, 6> values{};
+    for (std::size_t i = 0; i < values.size(); ++i) values[i] = grids[i][at[i]];
+    return with_settings(frame, values, grids[6][at[6]]);
+  };
+  std::map<Point, double> known;
+  const auto score = [&](const Point& at) {
+    const auto [entry, is_new] = known.try_emplace(at, -std::numeric_limits<double>::infinity());
+    if (is_new) entry->second = std::fmax(entry->second, scored(model(at), training, samples).log_score);  // not NaN
+    return entry->second;
+  };
+  Point best = starts.front();
+  for (Point at : starts) {
     for (bool moved = true; moved;) {
       moved = false;
       for (std::size_t setting = 0; setting < at.size(); ++setting) {
         Point trial = at;
-        for (trial[setting] = 0; trial[setting] < grids_[setting].size(); ++trial[setting])
+        for (trial[setting] = 0; trial[setting] < grids[setting].size(); ++trial[setting])
           if (score(trial) > score(at) + least_climb) {
             at = trial;
             moved = true;
           }
       }
     }
-    if (!best_ || score(at) > score(*best_)) best_ = at;
+    if (score(at) > score(best)) best = at;
   }
-
-  /// The best model of all climbs. P, q, the levels and the floor are in units of v, so a share of v0 at the start is
-  /// the same as levels of this share.
-  Bank best() const { return at(*best_); }
-
- private:
-  const Bank& frame_;
-  const Recording& training_;
-  Index samples_;
-  std::array<std::vector<double>, 7> grids_;
-  std::map<Point, double> known_;
-  std::optional<Point> best_;
-
-  Bank at(const Point& point) const {
-    const auto value = [&](std::size_t setting) { return grids_[setting][point[setting]]; };
-    const double share = value(6);
-    Bank bank = frame_;
-    bank.drift.rates = {share * value(0), share * value(1), value(2)};
-    bank.running_noise.lam = value(3);
-    bank.running_noise.nu = value(4);
-    bank.running_noise.floor = value(5) / share * bank.noise_variance();
-    bank.running_noise.level *= share;
-    return bank;
-  }
-
-  double score(const Point& point) {
-    const auto [known, is_new] = known_.try_emplace(point, 0.0);
-    if (!is_new) return known->second;
-    const double log_score = scored(at(point), training_, samples_).log_score;
-    return known->second = std::isnan(log_score) ? -std::numeric_limits<double>::infinity() : log_score;
-  }
-};
-
-/// The largest part of the training runs whose climbs are affordable; 0: all.
-Index affordable_transitions(const Bank& bank) {
-  constexpr double most_products = 3e7;  // of one pass over the runs; two climbs take about 140 passes
-  const double levels = static_cast<double>(bank.running_noise.levels()),
-               regressors = static_cast<double>(bank.structure.regressors()),
-               outputs = static_cast<double>(bank.structure.states);
-  return static_cast<Index>(most_products / (levels * levels * regressors * regressors * outputs));
+  return model(best);
 }
 
 }  // namespace
@@ -294,26 +273,28 @@ Index affordable_transitions(const Bank& bank) {
 Bank with_noise_levels(const Bank& drifting, const Bank& one_motion, const Recording& recording,
                        const std::vector<Index>& horizons) {
   constexpr Index fewest_transitions = 1000;
+  constexpr double most_products = 3e7;  // of one pass over the training part; two climbs take about 140 passes
   constexpr double least_level = 1e-6;
-  const Index n = drifting.structure.states;
   if (one_motion.mode_count() == 1) return drifting;
+  const Index n = drifting.structure.states, levels = one_motion.mode_count();
   Bank frame = drifting;
-  frame.running_noise.level.resize(n, one_motion.mode_count());
-  for (Index j = 0; j < one_motion.mode_count(); ++j)
+  frame.running_noise.level.resize(n, levels);
+  for (Index j = 0; j < levels; ++j) {
+    const Eigen::VectorXd Q = one_motion.modes[static_cast<std::size_t>(j)].Q.diagonal().head(n);
     frame.running_noise.level.col(j) =
-        (one_motion.modes[static_cast<std::size_t>(j)].Q.diagonal().head(n) + one_motion.R.diagonal())
-            .cwiseQuotient(drifting.noise_variance())
-            .cwiseMax(least_level);
+        (Q + one_motion.R.diagonal()).cwiseQuotient(drifting.noise_variance()).cwiseMax(least_level);
+  }
   frame.running_noise.switching = one_motion.transition.matrix();
-  const Index most = affordable_transitions(frame);
+  const Index r = drifting.structure.regressors();
+  const auto most = static_cast<Index>(most_products / static_cast<double>(levels * levels * r * r * n));
   if (most < fewest_transitions) return drifting;
   const std::optional<Recording> part = learning_part(recording, most, 1);
   const Recording& training = part ? *part : recording;
-  const Index samples = scored_samples(frame, training);
-  Climb climb(frame, training, samples);
+  Index samples = 0;
+  for (const Trajectory& run : training.runs)
+    if (run.role == Role::train) samples += (!log_densities(frame, run, {}).array().isNaN()).count();
   // q 1e-3, p0 10, no leak, Gaussian, the lowest floor, v0; a short and a long memory of the variance
-  for (const std::size_t lam : {5, 7}) climb.from({3, 3, 0, lam, 0, 0, 2});
-  Bank bank = climb.best();
+  Bank bank = climb(frame, training, samples, {{3, 3, 0, 5, 0, 0, 2}, {3, 3, 0, 7, 0, 0, 2}});
   bank.drift.tuning = scored(bank, training, samples);
   if (!(bank.drift.tuning.log_score > scored(drifting, training, samples).log_score)) return drifting;
   choose_horizon_factors(bank, recording, horizons);

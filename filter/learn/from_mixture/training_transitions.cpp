@@ -9,33 +9,6 @@
 #include "modebank/base/error.hpp"
 
 namespace modebank {
-namespace {
-
-std::vector<RunRows> number_rows(const Recording& recording) {
-  std::vector<RunRows> runs;
-  Index first = 0;
-  for (Index r = 0; r < std::ssize(recording.runs); ++r) {
-    const Trajectory& run = recording.runs[r];
-    if (run.role != Role::train) continue;
-    runs.push_back({r, first, run.transitions()});
-    first += run.transitions();
-  }
-  return runs;
-}
-
-/// Sets rows to zero if they are not finite.
-void blank_unusable(TrainingTransitions& transitions) {
-  Transitions& data = transitions.data;
-  transitions.usable = Eigen::VectorXd::Ones(data.count());
-  for (Index k = 0; k < data.count(); ++k) {
-    if (data.regressors.row(k).allFinite() && data.increments.row(k).allFinite()) continue;
-    data.regressors.row(k).setZero();
-    data.increments.row(k).setZero();
-    transitions.usable(k) = 0.0;
-  }
-}
-
-}  // namespace
 
 void check_structure(const Recording& recording, const LinearStructure& s) {
   if (recording.state_count() == s.states && recording.input_count() == s.inputs) return;
@@ -67,17 +40,25 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
                                                 const NoiseFactor& factor) {
   check_structure(recording, structure);
   const Index N = recording.transitions(Role::train);
-  TrainingTransitions all{structure,
-                          {Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)},
-                          {},
-                          number_rows(recording)};
-  for (const RunRows& rows : all.runs) {
-    const Transitions run = stack_transitions(recording.runs[rows.run], 0, rows.count, structure);
-    all.data.regressors.middleRows(rows.first, rows.count) = run.regressors;
-    all.data.increments.middleRows(rows.first, rows.count) = run.increments;
+  const Transitions rows{Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)};
+  TrainingTransitions all{structure, rows, Eigen::VectorXd::Ones(N), {}};
+  Index first = 0;
+  for (Index r = 0; r < std::ssize(recording.runs); ++r) {
+    const Trajectory& run = recording.runs[r];
+    if (run.role != Role::train) continue;
+    all.runs.push_back({r, first, run.transitions()});
+    const Transitions of_run = stack_transitions(run, 0, run.transitions(), structure);
+    all.data.regressors.middleRows(first, run.transitions()) = of_run.regressors;
+    all.data.increments.middleRows(first, run.transitions()) = of_run.increments;
+    first += run.transitions();
   }
   all.log_noise_factor = divide_by_noise(factor, structure, all.data);
-  blank_unusable(all);
+  for (Index k = 0; k < N; ++k) {
+    if (all.data.regressors.row(k).allFinite() && all.data.increments.row(k).allFinite()) continue;
+    all.data.regressors.row(k).setZero();
+    all.data.increments.row(k).setZero();
+    all.usable(k) = 0.0;
+  }
   require_transitions(all.usable.sum() > 0.0);
   return all;
 }
@@ -94,7 +75,7 @@ Eigen::MatrixXd RegressionSums::scatter_after(const Eigen::MatrixXd& change) con
 Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows) {
   Eigen::VectorXd sums(std::ssize(transitions.runs));
   for (Index r = 0; r < sums.size(); ++r) {
-    const RunRows& run = transitions.runs[static_cast<std::size_t>(r)];
+    const RunRows& run = transitions.runs[r];
     sums(r) = rows.segment(run.first, run.count).sum();
   }
   return sums;
@@ -102,8 +83,7 @@ Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::
 
 RegressionSums regression_sums(const Eigen::MatrixXd& regressors, const Eigen::VectorXd& weights,
                                const Eigen::MatrixXd& residuals) {
-  constexpr double negligible = 1e-12;  // smaller weights are skipped; in any mode, most transitions have a smaller
-                                        // weight
+  constexpr double negligible = 1e-12;  // in any mode, most transitions have a smaller weight and are skipped
   const Index q = regressors.cols(), n = residuals.cols();
   std::vector<Index> rows;
   for (Index k = 0; k < weights.size(); ++k)

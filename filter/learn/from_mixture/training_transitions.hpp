@@ -5,29 +5,25 @@
 
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
-#include "ident/model/linear_model.hpp"
 #include "ident/model/transitions.hpp"
 
 namespace modebank {
 
 /// The rows of one training run in TrainingTransitions.
 struct RunRows {
-  Index run = 0;    ///< index in Recording::runs
-  Index first = 0;  ///< row of the run's transition 0
-  Index count = 0;  ///< number of transitions of the run
+  Index run = 0;               ///< index in Recording::runs
+  Index first = 0, count = 0;  ///< row of the run's transition 0, and number of transitions
 };
 
-/// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row, so
-/// that positions match the run. Such a row holds zeros and is not usable.
+/// All transitions of the training runs, run by run. A transition with a missing (non-finite) sample keeps its row,
+/// with zeros, so that positions match the run.
 struct TrainingTransitions {
   LinearStructure structure;
   Transitions data;           ///< N rows
   Eigen::VectorXd usable;     ///< N, 1 where the row is usable, otherwise 0
   std::vector<RunRows> runs;  ///< training runs, in the order of the recording
 
-  /// N, logarithm of the noise factor. Each row was divided by the square root of its factor, so that all rows have
-  /// equal noise. Empty without a factor.
-  Eigen::VectorXd log_noise_factor = {};
+  Eigen::VectorXd log_noise_factor = {};  ///< N, result of divide_by_noise
 
   Index count() const { return data.count(); }
 };
@@ -38,21 +34,20 @@ void check_structure(const Recording& recording, const LinearStructure& structur
 /// Throws DataError without `any` transition of a training run.
 void require_transitions(bool any);
 
-/// Collects the training transitions. Throws the errors of check_structure, and DataError if no training run has a
-/// usable transition. `factor`: each row is divided by the square root of its factor. Least squares and
-/// expectation-maximisation then need no change.
+/// Collects the training transitions. Throws the errors of check_structure, and DataError without a usable transition.
+/// `factor`: divide_by_noise.
 TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
                                                 const NoiseFactor& factor = {});
 
-/// Divides every row by the square root of its noise factor. Returns the factors' logarithms, N; empty without a
-/// factor.
+/// Divides every row by the square root of its noise factor, so that all have equal noise. Returns the factors'
+/// logarithms, N; empty without a factor.
 Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows);
 
 /// Sums over the rows of each run. `rows`: N values.
 Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows);
 
-/// Sums over weighted transitions for a regression. g is the weight of a transition. r is the residual (increment minus
-/// prediction) with the coefficients about which the sums were taken.
+/// Sums over transitions for a regression, with weights g. r is the residual (increment minus prediction) with the
+/// coefficients about which the sums were taken.
 struct RegressionSums {
   Eigen::MatrixXd G;    ///< q x q, the sum of g phi phi'
   Eigen::MatrixXd H;    ///< q x n, the sum of g phi r'

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "ident/base/clustered_error.hpp"
 
@@ -23,8 +22,8 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 }
 
 double least_worth(double samples) {
-  const double evidence = std::log(static_cast<double>(refine_tuning.proposals) / refine_tuning.taken_by_chance);
-  return std::max(refine_tuning.least_gain, evidence / samples);
+  constexpr double proposals = 7.0, taken_by_chance = 0.05;
+  return std::max(least_gain, std::log(proposals / taken_by_chance) / samples);
 }
 
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples, double most_error) {
@@ -33,19 +32,17 @@ bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples, double 
 }
 
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
-  std::size_t best = 0;
-  for (std::size_t i = 1; i < candidates.size(); ++i)
-    if (total(candidates[i]) > total(candidates[best])) best = i;
-  return best;
+  const auto less = [](const LeftOutScores& a, const LeftOutScores& b) { return total(a) < total(b); };
+  return static_cast<std::size_t>(std::ranges::max_element(candidates, less) - candidates.begin());
 }
 
-std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
-                                 const RefineTuning& tuning) {
+std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples) {
+  constexpr double most_loss = 0.02;
   const std::size_t best = best_candidate(candidates);
   std::size_t chosen = best;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     const PairedLoss loss = paired_loss(candidates[best].log_likelihood, candidates[i].log_likelihood, samples);
-    if (!std::isfinite(loss.mean) || is_worth_it(loss, samples, tuning.most_loss)) continue;
+    if (!std::isfinite(loss.mean) || is_worth_it(loss, samples, most_loss)) continue;
     const Eigen::Index fewer = candidates[chosen].modes - candidates[i].modes;
     if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[chosen]))) chosen = i;
   }

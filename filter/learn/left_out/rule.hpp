@@ -5,38 +5,37 @@
 #include <limits>
 #include <vector>
 
-#include "filter/learn/tuning.hpp"
-
+/// The rule by which left-out runs decide.
 namespace modebank {
 
-/// Scores of a candidate on the left-out runs.
 struct LeftOutScores {
   Eigen::Index modes = 0;
-  Eigen::VectorXd log_likelihood;  ///< log-likelihood of each left-out run [nats]
+  Eigen::VectorXd log_likelihood;  ///< of each left-out run [nats]
 };
 
 /// Difference of two candidates' scores, sample by sample on the same runs.
 struct PairedLoss {
   double mean = 0.0;            ///< nats per sample; infinite if a score is not finite
-  double standard_error = 0.0;  ///< standard error of the mean, clustered by run; 0 if there is a single run
+  double standard_error = 0.0;  ///< clustered by run; 0 if there is a single run
 };
 
-/// Computes m = sum d_r / N and its standard error sqrt(R / (R - 1) sum (d_r - m n_r)^2) / N. d_r is the difference of
-/// the log-likelihoods of run r with n_r samples, N their sum. It is the ratio estimator over R clusters (Cochran 1977,
-/// section 6.4).
+/// m = sum d_r / N with its standard error sqrt(R / (R - 1) sum (d_r - m n_r)^2) / N, the ratio estimator over R
+/// clusters (Cochran 1977, section 6.4). d_r: difference of the log-likelihoods of run r with n_r samples, N their sum.
 PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& worse, const Eigen::VectorXd& samples);
 
-/// Smallest gain per sample for accepting an addition to a model. It is at least refine_tuning.least_gain. Over all
-/// samples together it is at least log(refine_tuning.proposals / taken_by_chance). By chance, the log-likelihood of
-/// left-out runs gains this much with probability at most taken_by_chance / proposals. The reason: a likelihood ratio
-/// has expectation one, and Markov's inequality bounds its tail.
+/// Nats per sample. Smaller gains do not hold on other runs: other seeds change held-out scores by 0.03 to 0.07.
+inline constexpr double least_gain = 1e-3;
+
+/// Smallest gain per sample for an addition to a model: at least least_gain, and log(7 / 0.05) nats over all samples.
+/// By chance left-out runs gain that much with probability 0.05 / 7 at most, because a likelihood ratio has expectation
+/// one (Markov's inequality). One configuration has at most seven proposals: number of modes, prior, measurement noise,
+/// noise by input, transitions by state, a fit over a horizon.
 double least_worth(double samples);
 
-/// The rule for accepting every addition to a model: more modes, noise by input, transitions by state. The `gain` on
-/// left-out runs must exceed least_worth. It must also exceed its standard error by run, which is capped at
-/// `most_error`. `samples`: number of samples of each left-out run. Other rules are worse. The standard error alone
-/// accepts additions to three of ten systems that have none. A t-test over six runs rejects drift worth 0.06 nats in
-/// four of five systems.
+/// The rule for accepting every addition to a model. The `gain` on left-out runs must exceed least_worth and its
+/// standard error by run, which is capped at `most_error`. `samples`: of each left-out run. Other rules are worse: the
+/// standard error alone accepts additions to three of ten systems that have none; a t-test over six runs rejects drift
+/// worth 0.06 nats in four of five systems.
 bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
                  double most_error = std::numeric_limits<double>::infinity());
 
@@ -44,9 +43,9 @@ bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
 /// The candidate with the fewest modes whose loss against the best one is within one standard error (Breiman et al.
-/// 1984, section 3.4.3), which is capped at tuning.most_loss. If several have this number of modes, takes the one with
-/// the highest score. `samples`: number of samples of each left-out run.
-std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples,
-                                 const RefineTuning& tuning);
+/// 1984, section 3.4.3), which is capped at 0.02 nats per sample: with few runs it is unreliable, and modes with a
+/// fifth of the usual gain should not be missed. If several have this number of modes, the one with the highest score.
+/// `samples`: number of samples of each left-out run.
+std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples);
 
 }  // namespace modebank

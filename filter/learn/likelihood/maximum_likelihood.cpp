@@ -6,26 +6,27 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/learn/likelihood/standard_errors.hpp"
 #include "filter/step/likelihood_gradient.hpp"
 #include "ident/base/linalg.hpp"
+#include "ident/base/not_a_number.hpp"
 
 namespace modebank {
 namespace {
 
+constexpr double jacobian_step = 1e-4;    // of central differences of the coordinates' exponentials; the error is 2e-9
 constexpr double step_share = 1e-2;       // step of central differences, as a share of a standard error
 constexpr double first_step = 1e-3;       // step of central differences until standard errors are known
 constexpr double least_curvature = 1e-2;  // curvature added to every coordinate, because some may be undetermined
-constexpr double remaining_gain = 1e-3;   // nats
+constexpr double remaining_gain = 1e-3;   // nats; a twentieth of a standard error
 constexpr Index iterations_per_metric = 40;
-constexpr Index fewest_metric_samples = 1000,
-                samples_per_coordinate = 5;  // a metric needs no standard error's accuracy
+constexpr Index fewest_metric_samples = 1000, samples_per_coordinate = 5;  // a metric may be rough
+
+double bounded_exp(double z) { return std::exp(std::clamp(z, -30.0, 30.0)); }
 
 bool is_finite(const Bank& bank) {
   return bank.R.allFinite() && bank.transition.matrix().allFinite() &&
@@ -47,152 +48,174 @@ BankGradient training_gradient(const Bank& bank, const Recording& recording, con
   return std::move(of_run.at(0));
 }
 
-struct Slope {
-  double value = -std::numeric_limits<double>::infinity();
-  Eigen::VectorXd gradient = {};
-};
-
-/// The target function near one bank.
-class Neighbourhood {
+/// Minus the target near a bank, relative to its value there, in units of standard errors. Ceres minimises it.
+class NearbyTarget final : public ceres::FirstOrderFunction {
  public:
-  Neighbourhood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& origin,
-                const Eigen::VectorXd& steps)
-      : target_(target),
-        coordinates_(origin, free),
-        steps_(steps.size() > 0 ? steps : Eigen::VectorXd::Constant(coordinates_.size(), first_step)) {}
+  /// `steps`: those of central differences until standard errors are known.
+  NearbyTarget(const LikelihoodTarget& target, const BankCoordinates& around, double origin_value,
+               Eigen::VectorXd steps)
+      : target_(target), around_(around), origin_value_(origin_value), steps_(std::move(steps)) {}
 
-  Index size() const { return coordinates_.size(); }
-  Bank decode(const Eigen::VectorXd& at) const { return coordinates_.decode(at); }
-  double value(const Eigen::VectorXd& at) const { return target_.value(decode(at)); }
-
-  /// The target and its gradient. Uses the adjoint of the filter's steps if it exists, else differences.
-  Slope slope(const Eigen::VectorXd& at) const {
-    const Bank bank = decode(at);
-    if (!is_finite(bank)) return {};
-    if (!is_exact())
-      return {target_.value(bank), differences(at, [this](const Bank& other) { return target_.value(other); })};
-    const BankGradient by_bank = training_gradient(bank, target_.recording, target_.filter);
-    Slope result{by_bank.log_likelihood + target_.log_prior(bank), Eigen::VectorXd(size())};
-    tbb::parallel_for(Index{0}, size(), [&](Index c) {
-      const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(size(), c);
-      const Bank up = decode(at + step), down = decode(at - step);
-      const double rise = by_bank.along(down, up) + target_.log_prior(up) - target_.log_prior(down);
-      result.gradient(c) = rise / (2.0 * steps_(c));
-    });
-    return result;
+  int NumParameters() const override { return static_cast<int>(around_.size()); }
+  const Eigen::VectorXd& steps() const { return steps_; }
+  Bank decode(const double* whitened) const {
+    return around_.decode(by_standard_errors_ * Eigen::VectorXd::Map(whitened, around_.size()));
   }
 
-  /// Gradient and information of likelihood and prior at the origin. The search uses the same gradient. So this
-  /// gradient vanishes where the search ends.
-  SampleGradients gradients() const {
-    const Eigen::VectorXd origin = Eigen::VectorXd::Zero(size());
-    SampleGradients result;
-    if (is_exact()) {
-      const InformationSamples samples(target_.recording,
-                                       std::max(fewest_metric_samples, samples_per_coordinate * size()));
-      const Recording& part = samples.part ? *samples.part : target_.recording;
-      result = sample_gradients(coordinates_, steps_, part, target_.filter);
-      result.sum = slope(origin).gradient;
-      result.information *= samples.factor;
-    } else {
-      result = sample_gradients(coordinates_, steps_, target_.recording, target_.filter);
-      result.sum += differences(origin, [this](const Bank& bank) { return target_.log_prior(bank); });
-    }
-    if (target_.prior) result.information += prior_information(coordinates_, *target_.prior);
-    return result;
+  /// Sets units and steps from the standard errors. Returns the expected gain of a Newton step; NaN if a number is not
+  /// finite.
+  double set_units() {
+    const Index most = std::max(fewest_metric_samples, samples_per_coordinate * around_.size());
+    Eigen::VectorXd gradient;
+    evaluate(Eigen::VectorXd::Zero(around_.size()), gradient);
+    Eigen::MatrixXd information = observed_information(target_, around_, steps_, most);
+    information.diagonal().array() += least_curvature;
+    if (!information.allFinite() || !gradient.allFinite()) return not_a_number;
+    const Cholesky factor(information);
+    if (!factor.definite()) return not_a_number;
+    steps_ = step_share * information.diagonal().cwiseSqrt().cwiseInverse();
+    by_standard_errors_ = factor.inverse_root();
+    return 0.5 * factor.whiten(gradient).squaredNorm();
   }
-
- private:
-  const LikelihoodTarget& target_;
-  BankCoordinates coordinates_;
-  Eigen::VectorXd steps_;
-
-  bool is_exact() const { return has_likelihood_gradient(coordinates_.origin(), target_.filter); }
-
-  template <class Value>
-  Eigen::VectorXd differences(const Eigen::VectorXd& at, Value value) const {
-    Eigen::VectorXd result(size());
-    tbb::parallel_for(Index{0}, size(), [&](Index c) {
-      const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(size(), c);
-      result(c) = (value(decode(at + step)) - value(decode(at - step))) / (2.0 * steps_(c));
-    });
-    return result;
-  }
-};
-
-/// Minus the target, relative to its value at the origin. Ceres minimises it. Coordinates are in units of standard
-/// errors.
-class WhitenedTarget final : public ceres::FirstOrderFunction {
- public:
-  WhitenedTarget(const Neighbourhood& around, Eigen::MatrixXd by_standard_errors, double origin_value)
-      : around_(around), by_(std::move(by_standard_errors)), origin_value_(origin_value) {}
-
-  int NumParameters() const override { return static_cast<int>(by_.rows()); }
 
   bool Evaluate(const double* whitened, double* cost, double* gradient) const override {
-    const Eigen::VectorXd at = by_ * Eigen::Map<const Eigen::VectorXd>(whitened, by_.rows());
     if (!gradient) {
-      *cost = origin_value_ - around_.value(at);
+      *cost = origin_value_ - target_.value(decode(whitened));
       return std::isfinite(*cost);
     }
-    const Slope slope = around_.slope(at);
-    *cost = origin_value_ - slope.value;
-    if (!std::isfinite(*cost)) return false;
-    Eigen::Map<Eigen::VectorXd> result(gradient, by_.rows());
-    result = -(by_.transpose() * slope.gradient);
-    return result.allFinite();
+    const Eigen::VectorXd at = by_standard_errors_ * Eigen::VectorXd::Map(whitened, around_.size());
+    Eigen::VectorXd by_coordinates;
+    *cost = origin_value_ - evaluate(at, by_coordinates);
+    Eigen::VectorXd::Map(gradient, around_.size()) = -(by_standard_errors_.transpose() * by_coordinates);
+    return std::isfinite(*cost) && by_coordinates.allFinite();
   }
 
  private:
-  const Neighbourhood& around_;
-  Eigen::MatrixXd by_;
+  /// The value of the target and its gradient, by the adjoint of the filter's steps if it exists, else by central
+  /// differences. NaN if the bank is not finite.
+  double evaluate(const Eigen::VectorXd& at, Eigen::VectorXd& gradient) const {
+    gradient.setConstant(around_.size(), not_a_number);
+    const Bank bank = around_.decode(at);
+    if (!is_finite(bank)) return not_a_number;
+    std::optional<BankGradient> by_bank;
+    if (has_likelihood_gradient(bank, target_.filter))
+      by_bank = training_gradient(bank, target_.recording, target_.filter);
+    tbb::parallel_for(Index{0}, around_.size(), [&](Index c) {
+      const Eigen::VectorXd step = steps_(c) * Eigen::VectorXd::Unit(around_.size(), c);
+      const Bank up = around_.decode(at + step), down = around_.decode(at - step);
+      const double rise = by_bank ? by_bank->along(down, up) + target_.log_prior(up) - target_.log_prior(down)
+                                  : target_.value(up) - target_.value(down);
+      gradient(c) = rise / (2.0 * steps_(c));
+    });
+    return by_bank ? by_bank->log_likelihood + target_.log_prior(bank) : target_.value(bank);
+  }
+
+  const LikelihoodTarget& target_;
+  const BankCoordinates& around_;
   double origin_value_;
+  Eigen::VectorXd steps_;
+  Eigen::MatrixXd by_standard_errors_;
 };
 
-/// The gradient at a bank, and the standard errors that serve as units.
-struct Metric {
-  Eigen::VectorXd steps;               ///< steps of central differences for the rest of the search
-  Eigen::MatrixXd by_standard_errors;  ///< matrix that maps whitened coordinates to coordinates
-  Eigen::VectorXd gradient;            ///< gradient with respect to whitened coordinates
-
-  /// Expected gain of a Newton step.
-  double expected_gain() const { return 0.5 * gradient.squaredNorm(); }
-};
-
-std::optional<Metric> metric_of(const SampleGradients& gradients) {
-  Eigen::MatrixXd information = gradients.information;
-  information.diagonal().array() += least_curvature;
-  if (!information.allFinite() || !gradients.sum.allFinite()) return std::nullopt;
-  const Cholesky factor(information);
-  if (!factor.definite()) return std::nullopt;
-  return Metric{step_share * information.diagonal().cwiseSqrt().cwiseInverse(), factor.inverse_root(),
-                factor.whiten(gradients.sum)};
-}
-
-struct BfgsEnd {
-  Eigen::VectorXd at;
-  Index iterations = 0;
-  double expected_gain = 0.0;  ///< expected gain of a Newton step at the end, with the metric at the beginning
-};
-
-/// `small_gain`: the search ends if the expected gain is below this value.
-BfgsEnd bfgs(const Neighbourhood& nearby, const Metric& metric, double origin_value, double small_gain, Index limit) {
-  const ceres::GradientProblem problem(new WhitenedTarget(nearby, metric.by_standard_errors, origin_value));
+/// Moves `bank` to the end of a search that stops where the expected gain is below `small_gain`. Returns the iterations
+/// and the expected gain of a Newton step at the end, with the units at the beginning.
+std::pair<Index, double> bfgs(std::unique_ptr<NearbyTarget> nearby, double small_gain, Index limit, Bank& bank) {
+  const NearbyTarget& around = *nearby;
+  const ceres::GradientProblem problem(nearby.release());
   ceres::GradientProblemSolver::Options options;
   options.line_search_direction_type = ceres::BFGS;
   options.logging_type = ceres::SILENT;
   options.max_num_iterations = static_cast<int>(std::min(iterations_per_metric, limit));
-  options.gradient_tolerance = 0.5 * std::sqrt(2.0 * small_gain / static_cast<double>(nearby.size()));
+  options.gradient_tolerance = 0.5 * std::sqrt(2.0 * small_gain / around.NumParameters());
   options.function_tolerance = 1e-10;
   options.parameter_tolerance = 1e-8;
   ceres::GradientProblemSolver::Summary summary;
-  Eigen::VectorXd at = Eigen::VectorXd::Zero(nearby.size());
+  Eigen::VectorXd at = Eigen::VectorXd::Zero(around.NumParameters());
   ceres::Solve(options, problem, at.data(), &summary);
   const double slope = summary.iterations.back().gradient_norm;
-  return {metric.by_standard_errors * at, std::max<Index>(std::ssize(summary.iterations) - 1, 1), 0.5 * slope * slope};
+  bank = around.decode(at.data());
+  return {std::max<Index>(std::ssize(summary.iterations) - 1, 1), 0.5 * slope * slope};
+}
+
+const double* set_process_noise(const double* at, const FreeParameters& free, Bank& bank) {
+  const Index n = bank.structure.states;
+  for (Mode& mode : bank.modes) {
+    if (free.Q_by_one_factor) {
+      mode.Q *= bounded_exp(*at);
+      continue;
+    }
+    Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
+    for (Index b = 0; b < n; ++b)
+      for (Index a = b; a < n; ++a, ++at) M(a, b) = a == b ? bounded_exp(*at) : *at;
+    const Eigen::MatrixXd L = Cholesky(mode.Q.topLeftCorner(n, n)).L() * M;
+    mode.Q.topLeftCorner(n, n).noalias() = L * L.transpose();
+    if (free.least_Q.size() > 0) mode.Q.diagonal().head(n) = mode.Q.diagonal().head(n).cwiseMax(free.least_Q);
+  }
+  return free.Q_by_one_factor ? at + 1 : at;
+}
+
+void set_transition(const double* at, Bank& bank) {
+  Eigen::MatrixXd T = bank.transition.matrix();
+  for (Index i = 0; i < T.rows(); ++i) {
+    Index largest = 0;
+    T.row(i).maxCoeff(&largest);
+    for (Index j = 0; j < T.cols(); ++j)
+      if (j != largest) T(i, j) *= bounded_exp(*at++);
+    T.row(i) /= T.row(i).sum();
+  }
+  bank.transition = TransitionMatrix(T);
+}
+
+/// The free parameters of a bank, in the order of BankCoordinates::jacobian.
+Eigen::VectorXd parameters_of(const Bank& bank, const FreeParameters& free) {
+  std::vector<double> all;
+  const auto append = [&](const Eigen::VectorXd& values) { all.insert(all.end(), values.begin(), values.end()); };
+  for (Index j = 0; j < bank.mode_count(); ++j) {
+    if (free.theta_unit.size() > 0) append(bank.theta(j));
+    for (Index b = 0; b < bank.structure.states; ++b)
+      append(bank.modes[j].Q.col(b).segment(b, bank.structure.states - b));
+    if (free.transition) append(bank.transition.matrix().row(j));
+  }
+  append(bank.R.diagonal()(free.R));
+  return Eigen::VectorXd::Map(all.data(), std::ssize(all));
 }
 
 }  // namespace
+
+BankCoordinates::BankCoordinates(Bank origin, FreeParameters free)
+    : origin_(std::move(origin)), free_(std::move(free)) {}
+
+Index BankCoordinates::size() const {
+  const Index K = origin_.mode_count(), n = origin_.structure.states;
+  const Index noise = free_.Q_by_one_factor ? 1 : K * n * (n + 1) / 2;
+  return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? K * (K - 1) : 0);
+}
+
+Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
+  Bank bank = origin_;
+  const Index p = free_.theta_unit.rows(), thetas = free_.theta_unit.cols();
+  const Eigen::Map<const Eigen::MatrixXd> z(at.data(), p, thetas);
+  for (Index j = 0; thetas > 0 && j < bank.mode_count(); ++j) {
+    const Index of = thetas == 1 ? 0 : j;
+    const Eigen::VectorXd theta = origin_.theta(j) + free_.theta_unit.col(of).cwiseProduct(z.col(of));
+    bank.modes[j].model = unpack(bank.structure, theta);
+  }
+  const double* next = set_process_noise(at.data() + z.size(), free_, bank);
+  for (const Index i : free_.R)
+    // A value below the bound is set to the bound. Otherwise it could only fall, and would become negative.
+    bank.R(i, i) = free_.least_R(i) + std::max(origin_.R(i, i) - free_.least_R(i), 0.0) * bounded_exp(*next++);
+  if (free_.transition && bank.mode_count() > 1) set_transition(next, bank);
+  return bank;
+}
+
+Eigen::MatrixXd BankCoordinates::jacobian() const {
+  Eigen::MatrixXd result(parameters_of(origin_, free_).size(), size());
+  for (Index c = 0; c < size(); ++c) {
+    const Eigen::VectorXd step = jacobian_step * Eigen::VectorXd::Unit(size(), c);
+    result.col(c) = (parameters_of(decode(step), free_) - parameters_of(decode(-step), free_)) / (2.0 * jacobian_step);
+  }
+  return result;
+}
 
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options) {
   std::vector<double> of_run(recording.runs.size(), 0.0);
@@ -215,35 +238,34 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
                                       const AscentLimits& limits) {
   const double transitions = static_cast<double>(target.recording.transitions(Role::train));
   const double small_gain = std::min(remaining_gain, limits.tolerance * transitions);
-  Eigen::VectorXd steps;
   LikelihoodMaximum best{start, target.value(start)};
   if (!std::isfinite(best.value)) return best;
+  Eigen::VectorXd steps;
   while (true) {
-    const std::optional<Metric> metric = metric_of(Neighbourhood(target, free, best.bank, steps).gradients());
-    if (!metric) return best;
-    if (steps.size() == 0 && !(best.value + metric->expected_gain() > limits.least_value)) best.end = MeasuredFit::none;
-    if (best.end == MeasuredFit::none) return best;
-    if (metric->expected_gain() <= small_gain)
+    const BankCoordinates around(best.bank, free);
+    const bool first = steps.size() == 0;
+    if (first) steps.setConstant(around.size(), first_step);
+    auto nearby = std::make_unique<NearbyTarget>(target, around, best.value, steps);
+    const double gain = nearby->set_units();
+    if (std::isnan(gain)) return best;
+    if (first && best.value + gain <= limits.least_value)
+      best.end = MeasuredFit::none;
+    else if (gain <= small_gain)
       best.end = MeasuredFit::converged;
     else if (best.iterations >= limits.max_iterations)
       best.end = MeasuredFit::iteration_limit;
     best.rose = best.rose || best.end == MeasuredFit::converged;
     if (best.end != MeasuredFit::stalled) return best;
-    steps = metric->steps;
-    const Neighbourhood nearby(target, free, best.bank, steps);
-    const BfgsEnd end = bfgs(nearby, *metric, best.value, small_gain, limits.max_iterations - best.iterations);
-    best.iterations += end.iterations;
-    Bank next = nearby.decode(end.at);
-    const double value = target.value(next);
+    steps = nearby->steps();
+    Bank end;
+    const auto [made, expected] = bfgs(std::move(nearby), small_gain, limits.max_iterations - best.iterations, end);
+    best.iterations += made;
+    const double value = target.value(end);
     if (!(value > best.value)) return best;
-    best.bank = std::move(next);
-    best.value = value;
-    best.rose = true;
     // A new metric costs two filter passes per coordinate; a gradient costs three passes in total.
-    if (end.expected_gain <= small_gain) {
-      best.end = MeasuredFit::converged;
-      return best;
-    }
+    if (expected <= small_gain) best.end = MeasuredFit::converged;
+    best = {std::move(end), value, best.iterations, best.end, true};
+    if (best.end == MeasuredFit::converged) return best;
   }
 }
 

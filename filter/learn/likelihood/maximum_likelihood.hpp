@@ -3,8 +3,8 @@
 #include <Eigen/Core>
 #include <limits>
 #include <optional>
+#include <vector>
 
-#include "filter/learn/likelihood/coordinates.hpp"
 #include "filter/learn/switching/regression.hpp"
 #include "filter/step/bank.hpp"
 #include "ident/data/trajectory.hpp"
@@ -13,26 +13,55 @@
 
 namespace modebank {
 
-/// Largest number of state lags with which R is estimated. With more lags, lag coefficients can replace R. On ICE with
-/// 17 lags the search took a minute for the bank and another for one_motion, without finding any R.
+/// Largest number of state lags with which R is estimated. With more, lag coefficients can replace R.
 inline constexpr Eigen::Index most_lags_beside_R = 8;
 
-/// The filter whose likelihood is maximised with measurement noise, whatever the variant of the bank's filter.
-inline constexpr FilterOptions learning_filter{FilterVariant::imm};
+/// Which parameters of a bank are estimated beside Q, and their units.
+struct FreeParameters {
+  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty if theta is known
+  bool Q_by_one_factor = false;      ///< one common factor on every Q, instead of separate Q
+  Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty if there are none
+  std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
+  Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
+  bool transition = true;            ///< true: T is estimated; false: T is known
+};
 
-/// Log-likelihood of all training runs [nats], each from its second sample. Runs in parallel, with a fixed order of
-/// summation.
+/// Unconstrained coordinates of all estimated parameters, relative to one bank, the origin:
+///   theta_j       = theta0_j + unit z (one coordinate per parameter);
+///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
+///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
+///   R_ii          = least_R_i + max(R0_ii - least_R_i, 0) exp(z);
+///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry.
+class BankCoordinates {
+ public:
+  BankCoordinates(Bank origin, FreeParameters free);
+
+  Eigen::Index size() const;
+  const Bank& origin() const { return origin_; }
+  const FreeParameters& free() const { return free_; }
+  /// The bank at these coordinates; zero is the origin.
+  Bank decode(const Eigen::VectorXd& at) const;
+
+  /// Derivative at the origin, q x size(), of theta, the lower triangle of Q (column by column, measured states) and
+  /// the row of T of each mode in turn, then R of the estimated outputs.
+  Eigen::MatrixXd jacobian() const;
+
+ private:
+  Bank origin_;
+  FreeParameters free_;
+};
+
+/// Log-likelihood of all training runs [nats], each from its second sample, summed in a fixed order.
 double training_log_likelihood(const Bank& bank, const Recording& recording, const FilterOptions& options);
 
-/// The objective: the filter's log-likelihood of the training runs plus the prior's log density. The likelihood is
-/// exact for one mode. For several modes it is the approximation of the IMM.
+/// The objective: the filter's log-likelihood of the training runs plus the prior's log density.
 struct LikelihoodTarget {
   const Recording& recording;
   FilterOptions filter;                 ///< variant `imm` if there are several modes
   std::optional<SwitchingPrior> prior;  ///< if empty, the target is the likelihood without a prior
   bool one_theta = false;               ///< whether the prior on theta counts only once
 
-  /// Value of the objective; minus infinity for a bank with non-finite numbers.
+  /// Minus infinity for a bank with non-finite numbers.
   double value(const Bank& bank) const;
   /// The prior's part; 0 without a prior.
   double log_prior(const Bank& bank) const;
@@ -41,8 +70,8 @@ struct LikelihoodTarget {
 struct AscentLimits {
   Index max_iterations = 100;
   double tolerance = 1e-6;  ///< nats per transition; the search has converged if the expected gain is at most this
-  double least_value = -std::numeric_limits<double>::infinity();  ///< no search if a Newton step from the start is not
-                                                                  ///< expected to rise above this value
+  /// No search unless a Newton step from the start is expected to rise above this value.
+  double least_value = -std::numeric_limits<double>::infinity();
 };
 
 struct LikelihoodMaximum {
@@ -54,12 +83,30 @@ struct LikelihoodMaximum {
 };
 
 /// Finds the target's maximum near `start`, by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
-/// standard errors. In these units all directions of the problem curve about equally. The gradient is computed by the
-/// adjoint of the filter's steps (likelihood_gradient.hpp), or else by central differences. The information is computed
-/// from the gradients of single samples (standard_errors.hpp). Converged: a Newton step is expected to gain less than
-/// the tolerance per transition, and less than 1e-3 nats over all samples. A gain of 1e-3 nats corresponds to a step of
-/// about a twentieth of a standard error.
+/// standard errors (observed_information), in which all directions curve about equally. The gradient is computed by the
+/// adjoint of the filter's steps (likelihood_gradient.hpp), or else by central differences.
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
                                       const AscentLimits& limits);
+
+/// Information of the training runs and of the prior about the coordinates, at the origin: the sum of the outer
+/// products of the samples' gradients (Berndt, Hall, Hall & Hausman 1974, Annals of Economic and Social Measurement
+/// 3(4)), by central differences with `steps` (one per coordinate). From more than `most` transitions, stretches of all
+/// runs are taken (left_out/folds.hpp), and the sum is scaled up.
+Eigen::MatrixXd observed_information(const LikelihoodTarget& target, const BankCoordinates& around,
+                                     const Eigen::VectorXd& steps, Index most);
+
+/// The bank with standard errors given the smoothed modes: theta's by its posterior covariance, NaN if that is not
+/// definite; Q's by the variance of a normal scatter, (Q_ii Q_jj + Q_ij^2) / W; T's by a binomial distribution.
+Bank with_complete_errors(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                          const SwitchingPrior& prior, Bank bank);
+
+/// All parameters of a bank as free parameters, with theta in units of the bank's standard errors. `estimate_R`:
+/// includes R of all outputs, at least `least_R` (n_y). The weights of a logit are known.
+FreeParameters all_parameters(const Bank& bank, bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R);
+
+/// The bank with standard errors from the inverse of the observed information for all parameters together. So they
+/// include the uncertainty of the modes and, for R > 0, of the states. If the information is singular, the errors that
+/// `bank` has stay, and those of R are NaN. `free`: all_parameters of the same bank.
+Bank with_standard_errors(const LikelihoodTarget& target, const FreeParameters& free, Bank bank);
 
 }  // namespace modebank

@@ -2,116 +2,107 @@
 
 #include <tbb/parallel_for.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
+#include <numeric>
+#include <random>
 #include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
 #include "filter/learn/from_mixture/bank.hpp"
+#include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "ident/base/linalg.hpp"
 #include "ident/base/log_two_pi.hpp"
 #include "ident/base/not_a_number.hpp"
-#include "mixture/reduction.hpp"
+#include "ident/base/seed.hpp"
+#include "modebank/base/error.hpp"
 
 namespace modebank {
 namespace {
 
-/// log N(r_k; 0, Q) of every transition under one mode; 0 where it is not usable.
-Eigen::VectorXd log_densities(const TrainingTransitions& transitions, const Eigen::VectorXd& theta,
-                              const Eigen::MatrixXd& Q) {
-  const Eigen::MatrixXd r =
-      transitions.data.increments - transitions.data.regressors * coefficients(transitions.structure, theta);
-  const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
-  const double constant = static_cast<double>(Q.rows()) * log_two_pi + log_determinant(Q);
-  Eigen::ArrayXd log_density = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
-  if (transitions.log_noise_factor.size() > 0)  // density of the rows before they were divided by the noise factor
-    log_density -= (transitions.usable.array() > 0.0)
-                       .select(0.5 * static_cast<double>(Q.rows()) * transitions.log_noise_factor.array(), 0.0);
-  return log_density * transitions.usable.array();
-}
+/// Share of the largest information that is added in every direction of theta, so that the information of one
+/// transition is definite.
+constexpr double information_share = 1e-8;
+constexpr double stay_of_start = 0.95;  // diagonal of T of a start from stretches, equal to BankOptions::stay
 
-/// Densities of all modes, N x K.
+/// log N(r_k; 0, Q_j) of every transition under every mode, N x K; 0 where the transition is not usable.
 Eigen::MatrixXd densities_of_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
   Eigen::MatrixXd log_density(transitions.count(), model.modes());
   tbb::parallel_for(Index{0}, model.modes(), [&](Index j) {
-    log_density.col(j) = log_densities(transitions, model.theta.col(j), model.Q[static_cast<std::size_t>(j)]);
+    const Eigen::MatrixXd& Q = model.Q[j];
+    const auto n = static_cast<double>(Q.rows());
+    const Eigen::MatrixXd r = transitions.data.increments -
+                              transitions.data.regressors * coefficients(transitions.structure, model.theta.col(j));
+    const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
+    const double constant = n * log_two_pi + log_determinant(Q);
+    Eigen::ArrayXd of_mode = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
+    if (transitions.log_noise_factor.size() > 0)  // density of the rows before they were divided by the noise factor
+      of_mode -= 0.5 * n * transitions.log_noise_factor.array();
+    log_density.col(j) = (transitions.usable.array() > 0.0).select(of_mode, 0.0);
   });
   return log_density;
 }
 
-/// Forward-backward algorithm over the rows of one run. Adds to the posterior's sums and fills its rows.
+/// Forward-backward algorithm over the rows of one run after another. Each step is scaled by the largest density of a
+/// possible mode (log domain).
 class RunSmoother {
  public:
-  RunSmoother(const SwitchingRegression& model, const TrainingTransitions& transitions,
-              const Eigen::MatrixXd& log_density)
-      : model_(model), transitions_(transitions), log_density_(log_density), transition_(model.modes(), model.logit) {}
+  RunSmoother(const SwitchingRegression& model, const TrainingTransitions& transitions)
+      : model_(model),
+        transitions_(transitions),
+        log_density_(densities_of_modes(transitions, model)),
+        transition_(model.modes(), model.logit) {}
 
-  void add(const RunRows& all, ModePosterior& posterior) {
-    const RunRows rows = from_first_usable(all);
-    if (rows.count == 0) return;
-    forward(rows);
-    posterior.log_likelihood += log_scale_.sum();
-    backward(rows, posterior);
-  }
-
-  /// log p(transition | previous transitions) for the run's rows.
-  void predict(const RunRows& all, Eigen::VectorXd& log_density) {
-    const RunRows rows = from_first_usable(all);
-    if (rows.count == 0) return;
-    forward(rows);
-    log_density.segment(rows.first, rows.count) = log_scale_;
-  }
-
- private:
-  /// The rows without unusable transitions at the beginning. The filter starts after these.
-  RunRows from_first_usable(RunRows rows) const {
-    while (rows.count > 0 && transitions_.usable(rows.first) == 0.0) {
-      ++rows.first;
-      --rows.count;
-    }
-    return rows;
-  }
-
-  void forward(const RunRows& rows) {
+  /// Goes forward over a run from its first usable transition, where the filter starts, too.
+  void forward(const RunRows& run) {
     const Index K = model_.modes();
-    density_.resize(K, rows.count);
-    filtered_.resize(K, rows.count);
-    scale_.resize(rows.count);
-    log_scale_.resize(rows.count);
-    for (Index k = 0; k < rows.count; ++k) {
-      const auto of_step = log_density_.row(rows.first + k).transpose();
-      filtered_.col(k).noalias() = transition_of(rows.first + k).transpose() * before(k);
-      const auto possible = filtered_.col(k).array() > 0.0;
-      const double largest = possible.select(of_step.array(), -std::numeric_limits<double>::infinity()).maxCoeff();
-      density_.col(k) = possible.select((of_step.array() - largest).exp(), 0.0);
-      filtered_.col(k).array() *= density_.col(k).array();
-      scale_(k) = filtered_.col(k).sum();
-      filtered_.col(k) /= scale_(k);
+    first_ = run.first;
+    while (first_ < run.first + run.count && transitions_.usable(first_) == 0.0) ++first_;
+    const Index count = run.first + run.count - first_;
+    density_.resize(K, count);
+    filtered_.resize(K, count + 1);
+    scale_.resize(count);
+    log_scale_.resize(count);
+    filtered_.col(0) = model_.initial;
+    for (Index k = 0; k < count; ++k) {
+      const auto of_step = log_density_.row(first_ + k).transpose().array();
+      auto filtered = filtered_.col(k + 1);
+      filtered.noalias() = transition_of(first_ + k).transpose() * filtered_.col(k);
+      const auto possible = filtered.array() > 0.0;
+      const double largest = possible.select(of_step, -std::numeric_limits<double>::infinity()).maxCoeff();
+      density_.col(k) = possible.select((of_step - largest).exp(), 0.0);
+      filtered.array() *= density_.col(k).array();
+      scale_(k) = filtered.sum();
+      filtered /= scale_(k);
       log_scale_(k) = largest + std::log(scale_(k));
     }
   }
 
-  void backward(const RunRows& rows, ModePosterior& posterior) {
+  /// Sets log p(transition | previous transitions) of the run's rows.
+  void predict(Eigen::VectorXd& log_density) const { log_density.segment(first_, log_scale_.size()) = log_scale_; }
+
+  /// Adds the run to the posterior's sums and fills its rows.
+  void backward(ModePosterior& posterior) {
+    if (scale_.size() == 0) return;
     const Index K = model_.modes();
     Eigen::VectorXd later = Eigen::VectorXd::Ones(K), weighted(K);
     Eigen::MatrixXd pairs(K, K);
-    for (Index k = rows.count - 1; k >= 0; --k) {
-      posterior.probability.row(rows.first + k) = filtered_.col(k).cwiseProduct(later);
+    for (Index k = scale_.size() - 1; k >= 0; --k) {
+      posterior.probability.row(first_ + k) = filtered_.col(k + 1).cwiseProduct(later);
       weighted = density_.col(k).cwiseProduct(later) / scale_(k);
-      const Eigen::MatrixXd& T = transition_of(rows.first + k);
-      pairs.noalias() = before(k) * weighted.transpose();
+      const Eigen::MatrixXd& T = transition_of(first_ + k);
+      pairs.noalias() = filtered_.col(k) * weighted.transpose();
       pairs.array() *= T.array();
       posterior.switches += pairs;
-      if (!model_.logit.empty()) posterior.pairs.col(rows.first + k) = pairs.reshaped();
+      if (!model_.logit.empty()) posterior.pairs.col(first_ + k) = pairs.reshaped();
       later.noalias() = T * weighted;
     }
     posterior.first += model_.initial.cwiseProduct(later);
+    posterior.log_likelihood += log_scale_.sum();
   }
 
-  /// Mode probabilities before the step to transition k.
-  Eigen::VectorXd before(Index k) const { return k > 0 ? filtered_.col(k - 1) : model_.initial; }
-
+ private:
   /// The transition matrix of a row; T itself if a sample is missing.
   const Eigen::MatrixXd& transition_of(Index row) {
     if (model_.logit.empty() || transitions_.usable(row) == 0.0) return model_.transition;
@@ -123,37 +114,61 @@ class RunSmoother {
 
   const SwitchingRegression& model_;
   const TrainingTransitions& transitions_;
-  const Eigen::MatrixXd& log_density_;
+  Eigen::MatrixXd log_density_;  ///< N x K
   TransitionWorkspace transition_;
-  Eigen::MatrixXd density_, filtered_;
+  Index first_ = 0;                     ///< row of the run's first usable transition
+  Eigen::MatrixXd density_, filtered_;  ///< K rows; column k of filtered_ is before transition k
   Eigen::VectorXd scale_, log_scale_;
 };
+
+/// The best theta of the modes `first` to `end` - 1 given their Q and the prior; empty if a Q is not definite.
+std::optional<Eigen::VectorXd> best_theta(const std::vector<RegressionSums>& sums, const SwitchingPrior& prior,
+                                          const SwitchingRegression& model, Index first, Index end) {
+  Eigen::MatrixXd information = prior.information;
+  Eigen::VectorXd pull = Eigen::VectorXd::Zero(prior.mean.size());
+  for (Index j = first; j < end; ++j) {
+    const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(model.Q[j]);
+    if (!Q_inverse) return std::nullopt;
+    information += Eigen::kroneckerProduct(*Q_inverse, sums[j].G).eval();
+    const Eigen::MatrixXd of_mode = sums[j].H * *Q_inverse;
+    pull += of_mode.reshaped();
+  }
+  const Cholesky factor(information);  // an LDLT of 128 coefficients takes four times the time
+  return prior.mean + (factor.definite() ? factor.solve(pull) : solve_semidefinite(information, pull));
+}
+
+/// Standard deviations of the logit's weights, d: `width` over the regressors' standard deviations. The weight of a
+/// regressor that is constant up to rounding has no effect.
+Eigen::VectorXd weight_deviations(const TrainingTransitions& transitions, double width) {
+  const Eigen::VectorXd mean = no_effect(transitions, 1).reference;
+  const Eigen::MatrixXd z = transitions.data.regressors.leftCols(mean.size()).rowwise() - mean.transpose();
+  const Eigen::ArrayXd sd = (z.cwiseAbs2().transpose() * transitions.usable / transitions.usable.sum()).cwiseSqrt();
+  return (sd > 1e-12 * mean.array().abs()).select(width / sd, width);
+}
 
 }  // namespace
 
 SwitchingRegression switching_model(const Bank& bank) {
-  SwitchingRegression model;
   const Index n = bank.structure.states;
-  model.theta.resize(bank.structure.parameters(), bank.mode_count());
+  SwitchingRegression model{Eigen::MatrixXd(bank.structure.parameters(), bank.mode_count()),
+                            {},
+                            bank.transition.matrix(),
+                            bank.initial_probability,
+                            bank.transition_logit};
   for (Index j = 0; j < bank.mode_count(); ++j) {
     model.theta.col(j) = bank.theta(j);
-    model.Q.push_back(bank.modes[static_cast<std::size_t>(j)].Q.topLeftCorner(n, n));
+    model.Q.push_back(bank.modes[j].Q.topLeftCorner(n, n));
   }
-  model.transition = bank.transition.matrix();
-  model.logit = bank.transition_logit;
   if (!model.logit.empty()) model.logit.reference -= bank.structure.acting_centre();
-  model.initial = bank.initial_probability;
   return model;
 }
 
-Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
-  Bank bank = frame;
+Bank with_modes(Bank bank, const SwitchingRegression& model) {
   bank.modes.clear();
   const Index p = bank.structure.parameters(), K = model.modes();
   for (Index j = 0; j < K; ++j)
-    bank.modes.push_back(make_mode(bank.structure, model.theta.col(j), model.Q[static_cast<std::size_t>(j)],
-                                   Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Constant(p, not_a_number),
-                                   1.0 / static_cast<double>(K)));
+    bank.modes.push_back(make_mode(bank.structure, model.theta.col(j), model.Q[j], Eigen::MatrixXd::Zero(p, p),
+                                   Eigen::VectorXd::Constant(p, not_a_number), 1.0 / static_cast<double>(K)));
   bank.transition = TransitionMatrix(model.transition);
   bank.transition_logit = model.logit;
   if (!model.logit.empty()) bank.transition_logit.reference += bank.structure.acting_centre();
@@ -163,67 +178,133 @@ Bank with_modes(const Bank& frame, const SwitchingRegression& model) {
 
 ModePosterior smooth_modes(const TrainingTransitions& transitions, const SwitchingRegression& model) {
   const Index K = model.modes();
-  const Eigen::MatrixXd log_density = densities_of_modes(transitions, model);
   ModePosterior posterior{Eigen::MatrixXd::Zero(transitions.count(), K), Eigen::MatrixXd::Zero(K, K),
                           Eigen::VectorXd::Zero(K)};
   if (!model.logit.empty()) posterior.pairs.setZero(K * K, transitions.count());
-  RunSmoother smoother(model, transitions, log_density);
-  for (const RunRows& rows : transitions.runs) smoother.add(rows, posterior);
+  RunSmoother smoother(model, transitions);
+  for (const RunRows& run : transitions.runs) {
+    smoother.forward(run);
+    smoother.backward(posterior);
+  }
   return posterior;
 }
 
 Eigen::VectorXd predictive_log_densities(const TrainingTransitions& transitions, const SwitchingRegression& model) {
-  const Eigen::MatrixXd log_density = densities_of_modes(transitions, model);
-  Eigen::VectorXd predictive = Eigen::VectorXd::Zero(transitions.count());
-  RunSmoother smoother(model, transitions, log_density);
-  for (const RunRows& rows : transitions.runs) smoother.predict(rows, predictive);
-  return predictive;
+  Eigen::VectorXd log_density = Eigen::VectorXd::Zero(transitions.count());
+  RunSmoother smoother(model, transitions);
+  for (const RunRows& run : transitions.runs) {
+    smoother.forward(run);
+    smoother.predict(log_density);
+  }
+  return log_density;
 }
 
-SwitchingSums sum_transitions(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                              const SwitchingPrior& prior) {
+std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                                          const Eigen::VectorXd& theta) {
   const Eigen::MatrixXd& X = transitions.data.regressors;
-  const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, prior.mean);
-  SwitchingSums sums{std::vector<RegressionSums>(static_cast<std::size_t>(posterior.probability.cols())),
-                     posterior.switches, posterior.first};
+  const Eigen::MatrixXd r = transitions.data.increments - X * coefficients(transitions.structure, theta);
+  std::vector<RegressionSums> sums(posterior.probability.cols());
   tbb::parallel_for(Index{0}, posterior.probability.cols(), [&](Index j) {
-    const Eigen::VectorXd g = posterior.probability.col(j).cwiseProduct(transitions.usable);
-    sums.modes[static_cast<std::size_t>(j)] = regression_sums(X, g, r);
+    sums[j] = regression_sums(X, posterior.probability.col(j).cwiseProduct(transitions.usable), r);
   });
   return sums;
 }
 
-std::vector<Eigen::MatrixXd> parameter_covariances(const SwitchingSums& sums, const SwitchingPrior& prior,
-                                                   const SwitchingRegression& model) {
-  std::vector<Eigen::MatrixXd> covariances;
-  for (std::size_t j = 0; j < sums.modes.size(); ++j) {
-    covariances.push_back(Eigen::MatrixXd::Constant(prior.mean.size(), prior.mean.size(), not_a_number));
-    const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(model.Q[j]);
-    if (!Q_inverse) continue;
-    if (auto inverse =
-            definite_inverse(Eigen::kroneckerProduct(*Q_inverse, sums.modes[j].G).eval() + prior.information))
-      covariances.back() = std::move(*inverse);
+SwitchingPrior switching_prior(const TrainingTransitions& transitions, const GlobalModel& global,
+                               const Eigen::VectorXd& prior_sd, double noise_transitions, double logit_width) {
+  SwitchingPrior prior{global.theta, {}, global.residual_covariance, noise_transitions, label_count_smoothing};
+  prior.noise.diagonal() = prior.noise.diagonal().unaryExpr(&positive_variance) * (1.0 + 1e-9);
+  if (logit_width > 0.0) prior.weight_sd = weight_deviations(transitions, logit_width);
+  if (prior_sd.size() > 0) {
+    prior.information = prior_sd.array().square().inverse().matrix().asDiagonal();
+    return prior;
   }
-  return covariances;
+  // The average information of one transition. A share of its largest entry is added to make it definite.
+  const Eigen::MatrixXd& X = transitions.data.regressors;
+  const Eigen::MatrixXd G = X.transpose() * transitions.usable.asDiagonal() * X / transitions.usable.sum();
+  const std::optional<Eigen::MatrixXd> Q_inverse = definite_inverse(prior.noise);
+  if (!Q_inverse)
+    throw DataError(
+        "the states' residuals in the training runs are linearly dependent: one state follows from the others; leave "
+        "it out of data.state");
+  prior.information = Eigen::kroneckerProduct(*Q_inverse, G);
+  prior.information.diagonal().array() += information_share * prior.information.diagonal().maxCoeff();
+  return prior;
 }
 
 double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model) {
-  const Index thetas = one_theta ? 1 : model.modes();
-  double sum = 0.0;
-  for (Index j = 0; j < thetas; ++j) {
-    const Eigen::VectorXd difference = model.theta.col(j) - prior.mean;
-    sum -= 0.5 * difference.dot(prior.information * difference);
-  }
+  const Eigen::MatrixXd difference = model.theta.leftCols(one_theta ? 1 : model.modes()).colwise() - prior.mean;
+  double sum = -0.5 * difference.cwiseProduct(prior.information * difference).sum();
   for (const Eigen::MatrixXd& Q : model.Q) {
     const std::optional<Eigen::MatrixXd> inverse = definite_inverse(Q);
     if (!inverse) return -std::numeric_limits<double>::infinity();
-    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + (*inverse * prior.noise).trace());
+    sum -= 0.5 * prior.noise_transitions * (log_determinant(Q) + inverse->cwiseProduct(prior.noise).sum());
   }
   if (!model.logit.empty())
     sum -= 0.5 * (model.logit.weights * prior.weight_sd.cwiseInverse().asDiagonal()).squaredNorm();
   if (prior.counts > 0.0)
     sum += prior.counts * (model.transition.array().log().sum() + model.initial.array().log().sum());
   return sum;
+}
+
+SwitchingRegression maximise(const TrainingTransitions& transitions, const ModePosterior& posterior,
+                             const SwitchingPrior& prior, const SwitchingEmOptions& options,
+                             SwitchingRegression model) {
+  const std::vector<RegressionSums> sums = sums_of_modes(transitions, posterior, prior.mean);
+  const Index K = model.modes(), sharing = options.one_theta ? K : 1;  // number of modes with one theta
+  for (int i = 0; i < options.alternations; ++i) {
+    // If a Q is singular, theta does not change. The objective is then minus infinity; such a fit is never chosen.
+    for (Index j = 0; j < K; j += sharing)
+      if (const auto theta = best_theta(sums, prior, model, j, j + sharing))
+        model.theta.middleCols(j, sharing).colwise() = *theta;
+    for (Index j = 0; j < K; ++j) {
+      const Eigen::MatrixXd change = coefficients(transitions.structure, model.theta.col(j) - prior.mean);
+      model.Q[j] = (sums[j].scatter_after(change) + prior.noise_transitions * prior.noise) /
+                   (sums[j].weight + prior.noise_transitions);
+    }
+  }
+  model.initial = posterior.first.array() + prior.counts;
+  model.initial /= model.initial.sum();
+  if (model.logit.empty()) {
+    const Eigen::ArrayXXd counts = posterior.switches.array() + prior.counts;
+    model.transition = counts.colwise() / counts.rowwise().sum();
+  } else {
+    raise_switching(transitions, posterior, prior, model);
+  }
+  return model;
+}
+
+void iterate(const TrainingTransitions& transitions, const SwitchingPrior& prior, const SwitchingEmOptions& options,
+             Index iterations, SwitchingFit& fit) {
+  if (fit.objective.empty()) fit.posterior = smooth_modes(transitions, fit.model);
+  const auto objective = [&] { return fit.posterior.log_likelihood + log_prior(prior, options.one_theta, fit.model); };
+  for (Index i = 0; i < iterations && !fit.converged; ++i) {
+    fit.objective.push_back(objective());
+    fit.model = maximise(transitions, fit.posterior, prior, options, std::move(fit.model));
+    fit.posterior = smooth_modes(transitions, fit.model);
+    const double gain = objective() - fit.objective.back();
+    // The first step moves from the optimum of the start to that of the prior. So the objective may fall in this step.
+    fit.converged = fit.objective.size() > 1 && !(gain >= options.tolerance * static_cast<double>(transitions.count()));
+  }
+}
+
+SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
+                                         Index modes, Index length, std::uint64_t seed, Index index) {
+  std::mt19937_64 generator = make_generator(seed, "refine", static_cast<std::uint64_t>(index));
+  const Index N = transitions.count();
+  length = std::clamp(length, Index{1}, N);
+  std::vector<Index> slots(std::max(N / length, Index{1}));
+  std::iota(slots.begin(), slots.end(), Index{0});
+  for (std::size_t i = slots.size() - 1; i > 0; --i) std::swap(slots[i], slots[generator() % (i + 1)]);
+  ModePosterior posterior{Eigen::MatrixXd::Zero(N, modes), Eigen::MatrixXd::Zero(modes, modes),
+                          Eigen::VectorXd::Zero(modes)};
+  for (Index j = 0; j < modes; ++j)
+    posterior.probability.col(j).segment(length * slots[j % slots.size()], length).setOnes();
+  const std::vector<Eigen::MatrixXd> Q(modes, prior.noise);
+  SwitchingRegression model = maximise(transitions, posterior, prior, {}, {prior.mean.replicate(1, modes), Q, {}, {}});
+  model.transition = TransitionMatrix::sticky(modes, stay_of_start).matrix();
+  model.initial = Eigen::VectorXd::Constant(modes, 1.0 / static_cast<double>(modes));
+  return model;
 }
 
 }  // namespace modebank

@@ -14,7 +14,6 @@ namespace modebank::layout {
 /// - q: variance that a step adds to every coefficient
 /// - p0: variance of the coefficients at the start
 /// - leak: factor by which a step multiplies the difference between the coefficients and `parameters`
-/// - wandering: `constant` or `gain` (one factor on the inputs' coefficients); absent: all coefficients
 /// - lam: forgetting factor of the running variance
 /// - nu: degrees of freedom of the noise; 0: Gaussian
 /// - training_log_score: log score [nat] per sample of the training runs
@@ -32,7 +31,6 @@ void exchange_drifting(Io& io, B& bank, const Units& units) {
   io.attribute_texts("state_names", bank.state_names);
   io.attribute_texts("input_names", bank.input_names);
   io.attribute("dt_s", bank.dt_s, rule::positive);
-  io.attribute_unless(Wandering::all, "wandering", bank.drift.wandering);
   io.attribute("lam", bank.running_noise.lam);
   io.attribute("nu", bank.running_noise.nu);
   io.attribute("training_log_score", bank.drift.tuning.log_score);

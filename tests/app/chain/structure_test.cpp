@@ -194,18 +194,9 @@ TEST_F(StructureOfRuns, WindowsOfManyLagsAreLongerAndClusteredByOneLagFits) {
 /// The inputs act with opposite signs in two modes. In a single linear model these effects cancel, so it may choose a
 /// wrong delay. With that delay no modes would be found.
 TEST(StageStructures, ModesAreAskedForTheUsualDelayToo) {
-  std::mt19937_64 generator(1);
-  boost::random::normal_distribution<double> normal;
-  Recording recording = empty_recording(1, 1);
-  for (Index r = 0; r < 6; ++r) {
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 300), u(1, 300);
-    for (Index k = 0; k < 300; ++k) {
-      u(k) = normal(generator);
-      const double gain = k / 60 % 2 == 0 ? 0.4 : -0.4;
-      if (k + 1 < 300) x(k + 1) = 0.5 * x(k) + gain * u(k) + 0.05 * normal(generator);
-    }
-    add_run(recording, x, u);
-  }
+  const Recording recording = simulated_runs(6, 300, 1, [](const auto& x, const auto& u, Index k, double w) {
+    return 0.5 * x(k) + (k / 60 % 2 == 0 ? 0.4 : -0.4) * u(k) + 0.05 * w;
+  });
   FoundStructure found{1, 1, 2};
   StructureScore linear{1, 1, 2};
   linear.rmse = Eigen::VectorXd::Ones(1);

@@ -62,25 +62,7 @@ TEST(Calibration, AFewPercentOfVarianceAreNoVerdict) {
     EXPECT_EQ(verdicts(bank, factor, 1, 20000, 1)[Calibration::calibrated], 1) << factor;
 }
 
-/// Innovations of the right size, but with autocorrelation. Hits then come in groups, and a group counts as few
-/// samples.
-TEST(Calibration, GroupsOfHitsAreFewSamples) {
-  Bank bank = test::single_mode(example_bank(1, 1, 1, 1e-12), 0);
-  bank.modes[0].model.A(0, 0) = -1.0;
-  bank.modes[0].model.B.setZero();
-  int wrong = 0;
-  for (int seed = 0; seed < 40; ++seed) {
-    Trajectory run = simulate_truth(bank, 1000, 8000 + static_cast<std::uint64_t>(seed)).run;
-    for (Index k = 1; k < 1000; ++k)
-      run.state(0, k) = 0.9 * run.state(0, k - 1) + std::sqrt(1 - 0.9 * 0.9) * run.state(0, k);
-    const Calibration verdict = row_of(bank, {run}).verdict;
-    wrong += verdict == Calibration::overconfident || verdict == Calibration::underconfident;
-  }
-  EXPECT_LE(wrong, 4);
-}
-
-/// Standard normal scores with autocorrelation: either of the scores themselves (correlation `rho`), or of their sizes
-/// only.
+/// Standard normal scores with autocorrelation `rho`, of the scores themselves or of their sizes only.
 std::vector<double> related_scores(int samples, double rho, bool sizes_alone, std::mt19937_64& generator) {
   boost::random::normal_distribution<double> normal;
   std::vector<double> scores;
@@ -187,31 +169,14 @@ TEST(Calibration, TooManyOutsideIsOverconfidentHoweverManyAreClose) {
   EXPECT_EQ(row.verdict, Calibration::overconfident);
 }
 
-/// If the model is correct, each central band contains its nominal share of the samples.
+/// Edges: 0.674489750196, 1.959963984540, and the roots of the quantiles of chi-square(1), 0.0313380 and 2.2414027.
 TEST(Calibration, BandsOfAStandardNormalHoldTheirShare) {
-  for (const double side : {-1.0, 1.0}) {
-    EXPECT_FALSE(band_hits(side * 0.674489750196).outside[0]);
-    EXPECT_TRUE(band_hits(side * 0.674489750197).outside[0]);
-    EXPECT_FALSE(band_hits(side * 1.959963984540).outside[2]);
-    EXPECT_TRUE(band_hits(side * 1.959963984541).outside[2]);
-    EXPECT_TRUE(band_hits(side * 0.031337).close);  // 2.5 % quantile: the square root of that of chi-square(1),
-                                                    // 0.0313380
-    EXPECT_FALSE(band_hits(side * 0.031339).close);
-    EXPECT_FALSE(band_hits(side * 2.241402).far);  // 97.5 % quantile: 2.2414027
-    EXPECT_TRUE(band_hits(side * 2.241403).far);
-  }
-}
-
-/// The largest autocorrelation of an autoregression is its coefficient, at lag one.
-TEST(Calibration, TheLargestAutocorrelationOfAnAutoregressionIsItsCoefficient) {
-  for (const double rho : {-0.6, 0.3, 0.8}) {
-    std::mt19937_64 generator(8);
-    const Autocorrelation found = largest_autocorrelation({related_scores(100000, rho, false, generator)});
-    EXPECT_EQ(found.lag, 1) << rho;
-    EXPECT_NEAR(found.value, rho, 0.02);
-  }
-  EXPECT_EQ(largest_autocorrelation({{1.0, 2.0}}).lag, 0);
-  EXPECT_EQ(largest_autocorrelation({}).lag, 0);
+  using Hits = SeriesByRun;
+  EXPECT_EQ(outside_band({{0.674489750196, -0.674489750196, 0.674489750197, -0.674489750197}}, 0.5),
+            (Hits{{0, 0, 1, 1}}));
+  EXPECT_EQ(outside_band({{1.959963984540}, {-1.959963984541}}, 0.95), (Hits{{0}, {1}}));
+  EXPECT_EQ(outside_band({{0.031337, -0.031337, 0.031339, -0.031339}}, true_tail), (Hits{{0, 0, 1, 1}}));
+  EXPECT_EQ(outside_band({{2.241402, -2.241402, 2.241403, -2.241403}}, 1.0 - true_tail), (Hits{{0, 0, 1, 1}}));
 }
 
 TEST(Calibration, TimeOfATailIsItsHits) {

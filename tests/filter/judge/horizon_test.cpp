@@ -6,9 +6,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <random>
-#include <vector>
 
 #include "filter/step/drifting.hpp"
 #include "ident/base/linalg.hpp"
@@ -67,24 +64,7 @@ TEST(Horizon, SeveralSamplesAheadIsTheModelRunOn) {
   }
 }
 
-TEST(Horizon, SummarisesRunsAndPools) {
-  const Bank bank = example_bank(1, 1, 2);
-  std::vector<Trajectory> runs{simulate_bank(bank, 30, 28), simulate_bank(bank, 50, 29)};
-  runs[1].run = "other";
-  std::vector<std::vector<HorizonSums>> sums;
-  for (const Trajectory& run : runs) sums.push_back(sum_horizons(evaluate_horizons(bank, run, {}, {1, 10})));
-  const std::vector<HorizonRow> rows = summarize_horizons("bank", runs, sums);
-  ASSERT_EQ(rows.size(), 6u);
-  EXPECT_EQ(rows[5].run, "*");
-  EXPECT_EQ(rows[5].horizon, 10);
-  EXPECT_EQ(rows[5].samples, 20 + 40);
-  EXPECT_NEAR(rows[5].log_score, (rows[1].log_score * 20 + rows[3].log_score * 40) / 60, 1e-12);
-  EXPECT_GT(rows[5].rmse(0), rows[4].rmse(0));
-  EXPECT_NEAR(rows[5].coverage_95, (rows[1].coverage_95 * 20 + rows[3].coverage_95 * 40) / 60, 1e-12);
-}
-
-/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts. With a deviation, they
-/// are treated like other rows.
+/// Two states with three lags each. `rounding`: deviation of the shift rows from exact shifts.
 Bank lagged_bank(double R, double rounding = 0.0) {
   Bank bank = example_bank(2, 1, 3, R);
   const LinearStructure one_lag = bank.structure;
@@ -104,46 +84,24 @@ Bank lagged_bank(double R, double rounding = 0.0) {
   return bank;
 }
 
-Trajectory run_with_gaps(std::uint64_t seed) {
-  Trajectory run = simulate_bank(example_bank(2, 1, 3), 120, seed);
-  run.state.col(30).setConstant(std::numeric_limits<double>::quiet_NaN());
-  run.state(0, 60) = std::numeric_limits<double>::quiet_NaN();
-  return run;
-}
-
-void expect_alike(const Bank& a, const Bank& b, const FilterOptions& options, double off) {
-  const Trajectory run = run_with_gaps(31);
-  const RunEvaluation left = evaluate_run(a, run, options), right = evaluate_run(b, run, options);
+void expect_alike(const Bank& a, const Bank& b, double off) {
+  Trajectory run = simulate_bank(example_bank(2, 1, 3), 120, 31);
+  run.state.col(30).setConstant(std::nan(""));
+  run.state(0, 60) = std::nan("");
+  const RunEvaluation left = evaluate_run(a, run, {}), right = evaluate_run(b, run, {});
   const auto of = [](const Eigen::MatrixXd& rows) { return Eigen::MatrixXd(rows.rightCols(rows.cols() - 3)); };
   EXPECT_TRUE(near(of(left.state), of(right.state), off));
   EXPECT_TRUE(near(of(left.covariance), of(right.covariance), off));
   EXPECT_TRUE(near(of(left.mode_probability), of(right.mode_probability), off * 1e2));
-  const HorizonEvaluation ahead = evaluate_horizons(a, run, options, {1, 5}),
-                          other = evaluate_horizons(b, run, options, {1, 5});
-  EXPECT_TRUE(near(of(ahead.log_density), of(other.log_density), off * 1e3));
+  EXPECT_TRUE(near(of(evaluate_horizons(a, run, {}, {1, 5}).log_density),
+                   of(evaluate_horizons(b, run, {}, {1, 5}).log_density), off * 1e3));
 }
 
-/// If lag rows are exact shifts, products use shorter loops.
-TEST(LaggedStates, ThatShiftAreThoseOfAnyRows) { expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), {}, 1e-10); }
-
-/// Exactly measured states are known, and computations are skipped. The result must be the limit for measurement
-/// noise that goes to zero.
-TEST(LaggedStates, MeasuredExactlyAreTheLimitOfLittleNoise) {
-  expect_alike(lagged_bank(0.0), lagged_bank(1e-13), {}, 1e-7);
-}
-
-/// Earlier samples of a lagged state are in earlier columns.
-TEST(LaggedStates, EstimatesHoldTheSampleAlone) {
-  const Trajectory run = run_with_gaps(33);
-  for (const double R : {0.0, 1e-4}) {
-    const RunEvaluation e = evaluate_run(lagged_bank(R), run, {});
-    for (const Eigen::MatrixXd* states : {&e.prediction, &e.state}) EXPECT_EQ(states->rows(), 2);
-    EXPECT_EQ(e.covariance.rows(), 4);
-    for (Index k = 3; k < run.samples(); ++k) {
-      if (!run.state.col(k).allFinite()) continue;
-      EXPECT_TRUE(near(e.prediction.col(k), run.state.col(k) - e.innovation.col(k), 1e-12)) << k;
-    }
-  }
+/// If lag rows are exact shifts, products use shorter loops. Exactly measured states are known, and computations are
+/// skipped: the result must be the limit for measurement noise that goes to zero.
+TEST(LaggedStates, ThatShiftOrAreMeasuredExactlyAreThoseOfAnyRows) {
+  expect_alike(lagged_bank(1e-4), lagged_bank(1e-4, 1e-14), 1e-10);
+  expect_alike(lagged_bank(0.0), lagged_bank(1e-13), 1e-7);
 }
 
 constexpr double ahead_digits = 1e-10;
@@ -179,28 +137,24 @@ TEST(DriftingHorizon, FixedCoefficientsOfSeveralOutputsAreOneKalmanFilter) {
   }
 }
 
-/// If the model is correct and drifts slowly, errors have the predicted variance.
+/// If the model is correct and drifts slowly, errors have the predicted variance. 40,000 values: because of their
+/// autocorrelation they are worth less, but at least a tenth of that number. Six standard errors are allowed.
 TEST(DriftingHorizon, ErrorsAreAsLargeAsStated) {
   Bank model = example_drifting(2, 1, 2);
   model.drift.rates = {2e-3, 0.05, 0.98};
   model.running_noise.lam = 1.0;
   model.running_noise.nu = 0.0;
-  const std::vector<Index> horizons{2, 6};
-  Eigen::Vector2d squares = Eigen::Vector2d::Zero();
-  Eigen::Vector2d count = Eigen::Vector2d::Zero();
+  Eigen::Array2d squares = Eigen::Array2d::Zero(), count = squares;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) {
-    const std::vector<LevelErrors> errors = level_errors(model, simulate_drifting(model, 2000, seed), horizons);
+    const std::vector<LevelErrors> errors = level_errors(model, simulate_drifting(model, 2000, seed), {2, 6});
     for (Index h = 0; h < 2; ++h)
-      for (const double u : errors[static_cast<std::size_t>(h)].whitened.reshaped())
+      for (const double u : errors[h].whitened.reshaped())
         if (!std::isnan(u)) {
           squares(h) += u * u;
           ++count(h);
         }
   }
-  // 40,000 values. Because of their autocorrelation they are worth less, but at least a tenth of that number. Six
-  // standard errors are allowed.
-  EXPECT_NEAR(squares(0) / count(0), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(0))));
-  EXPECT_NEAR(squares(1) / count(1), 1.0, 6.0 * std::sqrt(2.0 / (0.1 * count(1))));
+  EXPECT_TRUE(((squares / count - 1.0).abs() < 6.0 * (2.0 / (0.1 * count)).sqrt()).all());
 }
 
 TEST(DriftingHorizon, FactorWidensEveryVariance) {
@@ -214,8 +168,8 @@ TEST(DriftingHorizon, FactorWidensEveryVariance) {
   const std::vector<double> factors{1.0, 4.0, 4.0, 0.5};  // horizon 5 has the factor of horizon 3
   for (Index h = 0; h < 4; ++h)
     for (Index k = 10; k < run.samples(); ++k) {
-      const double c = factors[static_cast<std::size_t>(h)];
-      const double square = errors[static_cast<std::size_t>(h)].whitened.col(k).squaredNorm();
+      const double c = factors[h];
+      const double square = errors[h].whitened.col(k).squaredNorm();
       EXPECT_NEAR(wide.log_density(h, k), plain.log_density(h, k) - std::log(c) - 0.5 * square * (1.0 / c - 1.0),
                   ahead_digits);
     }
@@ -230,20 +184,17 @@ TEST(DriftingHorizon, ContractionDividesEveryRootByTheLargest) {
     const Eigen::VectorXd scale = Eigen::VectorXd::LinSpaced(s.regressors(), 0.5, 2.0);
     Eigen::MatrixXd theta(s.regressors(), s.states);
     for (double& value : theta.reshaped()) value = 0.6 * normal(generator);
-    const Eigen::MatrixXd result = contracted(s, scale, theta);
     const auto roots = [&](const Eigen::MatrixXd& scaled) {
       const Eigen::MatrixXd physical = scale.cwiseInverse().asDiagonal() * scaled;
       Eigen::VectorXd moduli = eigenvalues(unpack(s, Eigen::VectorXd(physical.reshaped())).full_form()).cwiseAbs();
       std::sort(moduli.begin(), moduli.end());
       return moduli;
     };
-    const Eigen::VectorXd before = roots(theta), after = roots(result);
-    const double largest = before(before.size() - 1);
+    const Eigen::MatrixXd result = contracted(s, scale, theta);
+    const double largest = roots(theta).tail(1)(0);
     unstable += largest > 1.0 ? 1 : 0;
-    if (largest <= 1.0) {
-      EXPECT_EQ(result, theta);
-    }
-    EXPECT_TRUE(near(after, before / std::max(1.0, largest), 1e-9));
+    EXPECT_TRUE(largest > 1.0 || result == theta);
+    EXPECT_TRUE(near(roots(result), roots(theta) / std::max(1.0, largest), 1e-9));
     EXPECT_EQ(result.bottomRows(2), theta.bottomRows(2)) << "inputs and intercept stay";
   }
   EXPECT_GT(unstable, 10);

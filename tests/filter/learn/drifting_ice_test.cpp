@@ -69,20 +69,15 @@ TEST_P(DriftingIce, GridScoresAndHorizonsAreNumpys) {
                                  model.running_noise.lam, model.running_noise.nu}),
             std::vector<double>(point.begin(), point.begin() + 5));
 
-  Sums one_step;
   std::vector<Sums> ahead(3);
   for (const Trajectory& run : recording.runs) {
     if (run.role != Role::test) continue;
-    const RunEvaluation one = evaluate_run(model, run, {});
     const HorizonEvaluation many = evaluate_horizons(model, run, {}, {1, 2, 10});
-    for (Index k = 0; k < run.samples(); ++k) {
-      one_step.add(one.log_density(k), one.innovation(0, k));
-      for (Index h = 0; h < 3; ++h)
-        ahead[static_cast<std::size_t>(h)].add(many.log_density(h, k), many.error[static_cast<std::size_t>(h)](0, k));
-    }
+    for (Index k = 0; k < run.samples(); ++k)
+      for (std::size_t h = 0; h < 3; ++h) ahead[h].add(many.log_density(static_cast<Index>(h), k), many.error[h](0, k));
   }
   const nlohmann::json& held_out = golden.at("test");
-  one_step.expect(held_out);
+  ahead[0].expect(held_out);
   for (std::size_t h = 0; h < 3; ++h) {
     SCOPED_TRACE(h);
     const nlohmann::json& expected = held_out.at("horizons").at(h);

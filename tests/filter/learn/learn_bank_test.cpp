@@ -2,9 +2,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <boost/random/normal_distribution.hpp>
-#include <random>
-
 #include "modebank/base/error.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
@@ -20,17 +17,12 @@ const Eigen::MatrixXd R_given = Eigen::MatrixXd::Constant(1, 1, 1e-4);
 /// Runs of 40 transitions, each in one mode of x[k+1] = x + a x + 0.5 u + 0.1 w, and a held-out run that must be
 /// ignored.
 Recording runs_in_modes(const std::vector<double>& a) {
-  std::mt19937_64 generator(9);
-  boost::random::normal_distribution<double> normal;
-  Recording recording = test::empty_recording(1, 1);
-  for (std::size_t i = 0; i < a.size(); ++i) {
-    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, 41), u(1, 41);
-    for (Index k = 0; k < 41; ++k) {
-      u(k) = normal(generator);
-      if (k < 40) x(k + 1) = x(k) + a[i] * x(k) + 0.5 * u(k) + 0.1 * normal(generator);
-    }
-    test::add_run(recording, x, u);
-  }
+  Index run = -1;
+  Recording recording =
+      test::simulated_runs(std::ssize(a), 41, 9, [&](const auto& x, const auto& u, Index k, double w) {
+        if (k == 0) ++run;
+        return x(k) + a[run] * x(k) + 0.5 * u(k) + 0.1 * w;
+      });
   test::add_run(recording, Eigen::MatrixXd::Constant(1, 10, 100.0), Eigen::MatrixXd::Zero(1, 10), Role::test);
   recording.runs.back().time_s *= 50.0;
   return recording;
@@ -58,29 +50,19 @@ struct Case {
   }
 };
 
-TEST(LearnBank, OneModeWithoutPriorIsTheGlobalModel) {
-  Case data({-0.3, -0.3});
-  data.mixture = test::mixture_of(data.fits, Eigen::MatrixXd::Ones(1, data.fits.count()));
-  const Bank bank = data.learn();
-  ASSERT_EQ(bank.mode_count(), 1);
-  EXPECT_TRUE(near(bank.theta(0), data.fits.global.theta, bank_exact));
-  EXPECT_TRUE(near(bank.modes[0].Q, data.fits.global.residual_covariance, bank_exact));
-  EXPECT_TRUE(near(bank.modes[0].standard_error, data.fits.global.covariance.diagonal().cwiseSqrt(), bank_exact));
-  EXPECT_TRUE(near(bank.transition.matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
-}
-
 TEST(LearnBank, EachModeIsTheRegressionOfItsRun) {
   const Case data({-0.2, -0.5, -0.8});
   const Bank bank = data.learn();
   ASSERT_EQ(bank.mode_count(), 3);
   for (Index j = 0; j < 3; ++j) {
-    EXPECT_TRUE(near(bank.theta(j), data.alone(j).theta, bank_exact));
-    EXPECT_TRUE(near(bank.modes[j].Q, data.alone(j).residual_covariance, bank_exact));
+    const GlobalModel alone = data.alone(j);
+    EXPECT_TRUE(near(bank.theta(j), alone.theta, bank_exact));
+    EXPECT_TRUE(near(bank.modes[j].Q, alone.residual_covariance, bank_exact));
+    EXPECT_TRUE(near(bank.modes[j].standard_error, alone.covariance.diagonal().cwiseSqrt(), bank_exact));
     EXPECT_TRUE(near(bank.modes[j].parameter_covariance, data.mixture.mixture.covariances[j], 0.0));
     EXPECT_NEAR(bank.modes[j].weight, 1.0 / 3.0, bank_exact);
   }
   EXPECT_NO_THROW(check_sizes(bank));
-  EXPECT_TRUE(near(bank.C, Eigen::MatrixXd::Identity(1, 1), 0.0));
   EXPECT_TRUE(near(bank.R, R_given, 0.0));
   EXPECT_TRUE(near(bank.initial_probability, Eigen::Vector3d::Constant(1.0 / 3.0), bank_exact));
   EXPECT_THAT(bank.state_names, testing::ElementsAre("x0"));
@@ -89,23 +71,9 @@ TEST(LearnBank, EachModeIsTheRegressionOfItsRun) {
   EXPECT_TRUE(bank.screened.empty());
 }
 
-TEST(LearnBank, PriorPullsTowardTheGlobalModel) {
-  Case data({-0.2, -0.8});
-  const Bank free = data.learn();
-  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 1e-6);
-  const Bank held = data.learn();
-  data.fits.prior_sd = Eigen::VectorXd::Constant(2, 1e6);
-  const Bank loose = data.learn();
-  for (Index j = 0; j < 2; ++j) {
-    EXPECT_TRUE(near(held.theta(j), data.fits.global.theta, 1e-6));
-    EXPECT_TRUE(near(loose.theta(j), free.theta(j), 1e-9));
-  }
-}
-
 TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
   Case data({-0.2, -0.8});
-  data.mixture.mixture.means.col(0) << -0.25, 0.4;
-  data.mixture.mixture.means.col(1) << -0.75, 0.6;
+  data.mixture.mixture.means << -0.25, -0.75, 0.4, 0.6;
   BankOptions options;
   options.theta = ThetaSource::mean;
   const Bank bank = data.learn(options);
@@ -121,46 +89,34 @@ TEST(LearnBank, MeanTakesTheComponentsMeansAndNoiseAboutThem) {
 
 /// By default linear modes are refined, unless refinement would undo an option that the user has set.
 TEST(LearnBank, RefinementIsTheDefaultOfWhatItDoesNotUndo) {
-  BankOptions options;
+  BankOptions options, mean, fixed, stay;
   EXPECT_EQ(refinement_asked(options, true), Refine::em);
   EXPECT_EQ(refinement_asked(options, false), Refine::none);
   options.refine = Refine::em;
   EXPECT_EQ(refinement_asked(options, false), Refine::em);
-  options.refine = Refine::none;
-  EXPECT_EQ(refinement_asked(options, true), Refine::none);
-  BankOptions mean, fixed, stay;
   mean.theta = ThetaSource::mean;
   fixed.process_variance = 0.01;
   stay.transition = TransitionSource::stay;
   for (const BankOptions& kept : {mean, fixed, stay}) EXPECT_EQ(refinement_asked(kept, true), Refine::none);
 }
 
-TEST(LearnBank, NoiseMayBeGiven) {
-  const Case data({-0.2, -0.8});
+TEST(LearnBank, NoiseAndTransitionsMayBeGiven) {
+  const Case data({-0.2, -0.8}, 2);  // 16 windows in each run give 15 pairs
+  const double stay = std::sqrt(15.1 / 15.2);
   const Bank own = data.learn();
+  EXPECT_TRUE(near(own.transition.matrix(), Eigen::Matrix2d{{stay, 1 - stay}, {1 - stay, stay}}, bank_exact));
   BankOptions options;
   options.process_variance = 0.02;
   options.measurement_variance = 0.03;
+  options.transition = TransitionSource::stay;
+  options.stay = 0.9;
   const Bank fixed = data.learn(options);
-  EXPECT_NE(own.modes[0].Q(0, 0), own.modes[1].Q(0, 0));
   for (Index j = 0; j < 2; ++j) {
     EXPECT_EQ(fixed.modes[j].Q(0, 0), 0.02);
     EXPECT_TRUE(near(fixed.theta(j), own.theta(j), 0.0));
   }
   EXPECT_EQ(fixed.R(0, 0), 0.03);
-}
-
-TEST(LearnBank, TransitionsComeFromLabelsOrStay) {
-  const Case data({-0.2, -0.8}, 2);  // 16 windows in each run give 15 pairs
-  const double stay = std::sqrt(15.1 / 15.2);
-  Eigen::Matrix2d expected;
-  expected << stay, 1 - stay, 1 - stay, stay;
-  EXPECT_TRUE(near(data.learn().transition.matrix(), expected, bank_exact));
-  BankOptions options;
-  options.transition = TransitionSource::stay;
-  options.stay = 0.9;
-  expected << 0.9, 0.1, 0.1, 0.9;
-  EXPECT_TRUE(near(data.learn(options).transition.matrix(), expected, bank_exact));
+  EXPECT_TRUE(near(fixed.transition.matrix(), Eigen::Matrix2d{{0.9, 0.1}, {0.1, 0.9}}, bank_exact));
 }
 
 TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
@@ -183,105 +139,65 @@ TEST(Screening, UnstableAndStarvedModesAreListedAndLeftOut) {
   EXPECT_NEAR(bank.screened[0].spectral_radius, 1.0 + data.alone(1).theta(0), bank_exact);
   EXPECT_EQ(bank.screened[1].component, 3);
   EXPECT_EQ(bank.screened[1].reason, "starved");
-
   BankOptions keep;
   keep.screen = false;
   const Bank all = data.learn(keep);
   EXPECT_EQ(all.mode_count(), 4);
   EXPECT_TRUE(all.screened.empty());
-  for (const Mode& mode : all.modes) EXPECT_TRUE(pack(all.structure, mode.model).allFinite() && mode.Q.allFinite());
 }
 
-TEST(Screening, AnIntegratorIsStable) {
+/// An integrator (0) is stable. Without any stable component, all of them together are one mode, even if it is unstable
+/// (0.4 and 0.3).
+TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
   Case data({-0.2, -0.3});
   BankOptions options;
   options.theta = ThetaSource::mean;
   data.mixture.mixture.means.row(0) << 0.0, 1e-8;
-  const Bank bank = data.learn(options);
-  ASSERT_EQ(bank.mode_count(), 1);
-  EXPECT_EQ(bank.modes[0].model.A(0, 0), 0.0);
-}
-
-/// Also if this mode is unstable, too (0.4 and 0.3). Its predictions may be right one step ahead, like those of the
-/// global model that it competes with. The mode is kept, with a warning.
-TEST(Screening, WhereNoComponentIsLeftAllOfThemTogetherAreOneMode) {
+  ASSERT_EQ(data.learn(options).mode_count(), 1);
+  EXPECT_EQ(data.learn(options).theta(0)(0), 0.0);
   for (const double first : {-2.5, 0.4}) {
-    Case data({-0.2, -0.3});
-    BankOptions options;
-    options.theta = ThetaSource::mean;
     data.mixture.mixture.means.row(0) << first, 0.3;
     const Bank bank = data.learn(options);
     ASSERT_EQ(bank.mode_count(), 1);
     EXPECT_NEAR(bank.theta(0)(0), data.mixture.mixture.means.row(0).dot(data.mixture.mixture.weights), bank_exact);
-    EXPECT_EQ(bank.transition.matrix()(0, 0), 1.0);
     ASSERT_EQ(bank.screened.size(), 2);
     for (const ScreenedMode& mode : bank.screened) EXPECT_EQ(mode.reason, "unstable");
   }
 }
 
-TEST(LearnBank, BadArgumentsAreNamed) {
+TEST(LearnBank, BadArgumentsAreRefused) {
   Case data({-0.2, -0.3});
   BankOptions options;
   options.measurement_variance = -1.0;
   EXPECT_THROW(data.learn(options), std::invalid_argument);
   EXPECT_THROW(learn_bank(data.recording, data.fits, data.mixture, {}, Eigen::MatrixXd::Identity(2, 2)),
                std::invalid_argument);
+  MixtureResult foreign = data.mixture;
+  foreign.responsibilities = Eigen::MatrixXd(Eigen::MatrixXd::Constant(2, data.fits.count() - 1, 0.5));
+  EXPECT_THROW(learn_bank(data.recording, data.fits, foreign, {}, R_given), std::invalid_argument);
   data.fits.structure.inputs = 2;
   EXPECT_THROW(data.learn(), std::invalid_argument);
 }
 
-/// Rounding error of a few divisions.
-constexpr double row_rounding = 1e-14;
-
-WindowFits windows(std::initializer_list<Window> list, Index step) {
-  WindowFits fits;
-  fits.step = step;
-  fits.windows = list;
-  return fits;
-}
-
+/// Counts: 0->0 and 0->1 (component 2). Windows 4 and 8 have a gap between them. Then a new run begins. Windows without
+/// a mode, and one of component 1, which is not kept, count as the previous mode: 1->1 three times; 1->0.
 TEST(LabelTransitions, CountsNeighboursWithinRuns) {
-  const WindowFits fits = windows({{0, 0}, {0, 2}, {0, 4}, {0, 8}, {1, 0}, {1, 2}, {1, 4}, {1, 6}}, 2);
-  Eigen::VectorXi labels(8);
-  labels << 0, 0, 1, 1, 1, -1, 1, 0;
-  // Counts: 0->0 and 0->1. Windows 4 and 8 have a gap between them. Then a new run begins. The window without a mode
-  // counts as the previous mode: 1->1 twice; 1->0.
-  Eigen::MatrixXd expected(2, 2);
-  expected << 1, 1, 1, 2;
-  EXPECT_TRUE(near(count_label_transitions(fits, labels, {0, 1}), expected, 0.0));
+  WindowFits fits;
+  fits.step = 2;
+  fits.windows = {{0, 0}, {0, 2}, {0, 4}, {0, 8}, {1, 0}, {1, 2}, {1, 4}, {1, 6}, {1, 8}};
+  const Eigen::VectorXi labels{{0, 0, 2, 2, 2, -1, 1, 2, 0}};
+  EXPECT_EQ(count_label_transitions(fits, labels, {0, 2}), (Eigen::MatrixXd{{1, 1}, {1, 3}}));
 }
 
-TEST(LabelTransitions, AScreenedModeCountsAsTheModeBefore) {
-  const WindowFits fits = windows({{0, 0}, {0, 1}, {0, 2}, {0, 3}, {0, 4}}, 1);
-  Eigen::VectorXi labels(5);
-  labels << 0, 1, 2, 2, 0;
-  Eigen::MatrixXd expected(2, 2);  // components 0 and 2 are kept
-  expected << 1, 1, 1, 1;
-  EXPECT_TRUE(near(count_label_transitions(fits, labels, {0, 2}), expected, 0.0));
-}
-
-TEST(TransitionFromCounts, SmoothsByATenth) {
-  Eigen::MatrixXd counts(2, 2);
-  counts << 9, 1, 0, 0;
-  Eigen::MatrixXd expected(2, 2);
-  expected << 9.1 / 10.2, 1.1 / 10.2, 0.5, 0.5;
-  EXPECT_TRUE(near(transition_from_counts(counts, 1).matrix(), expected, row_rounding));
-}
-
-TEST(TransitionFromCounts, LongerStepsTakeTheRootOfTheDiagonal) {
-  Eigen::MatrixXd counts(3, 3);
-  counts << 7.9, 0.9, 0.9, 0.4, 3.9, 1.4, 0, 0, 0;
+TEST(TransitionFromCounts, SmoothsByATenthAndTakesTheRootOfTheDiagonal) {
+  constexpr double row_rounding = 1e-14;  // of a few divisions
   const double stay0 = std::cbrt(0.8), stay1 = std::cbrt(4.0 / 6.0), stay2 = std::cbrt(1.0 / 3.0);
-  Eigen::MatrixXd expected(3, 3);
-  expected << stay0, (1 - stay0) / 2, (1 - stay0) / 2,  //
-      (1 - stay1) / 4, stay1, (1 - stay1) * 3 / 4,      //
-      (1 - stay2) / 2, (1 - stay2) / 2, stay2;
-  EXPECT_TRUE(near(transition_from_counts(counts, 3).matrix(), expected, row_rounding));
-}
-
-TEST(TransitionFromCounts, OneModeStays) {
-  EXPECT_TRUE(
-      near(transition_from_counts(Eigen::MatrixXd::Constant(1, 1, 5.0), 4).matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
+  const Eigen::MatrixXd expected{{stay0, (1 - stay0) / 2, (1 - stay0) / 2},
+                                 {(1 - stay1) / 4, stay1, (1 - stay1) * 3 / 4},
+                                 {(1 - stay2) / 2, (1 - stay2) / 2, stay2}};
+  EXPECT_TRUE(near(transition_from_counts(Eigen::MatrixXd{{7.9, 0.9, 0.9}, {0.4, 3.9, 1.4}, {0, 0, 0}}, 3).matrix(),
+                   expected, row_rounding));
+  EXPECT_TRUE(near(transition_from_counts(Eigen::MatrixXd{{5.0}}, 4).matrix(), Eigen::MatrixXd::Ones(1, 1), 0.0));
 }
 
 }  // namespace

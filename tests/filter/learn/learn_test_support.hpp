@@ -1,8 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <boost/random/normal_distribution.hpp>
 #include <cmath>
+#include <cstdint>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <string>
 #include <utility>
 #include <vector>
@@ -30,6 +33,22 @@ inline void add_run(Recording& recording, Eigen::MatrixXd state, Eigen::MatrixXd
   run.state = std::move(state);
   run.input = std::move(input);
   recording.runs.push_back(std::move(run));
+}
+
+/// Runs of one state under a white input of unit variance. `next(x, u, k, noise)`: x[k+1] of a run, with standard
+/// normal noise.
+template <class Next>
+Recording simulated_runs(Index runs, Index samples, std::uint64_t seed, Next next) {
+  std::mt19937_64 generator(seed);
+  boost::random::normal_distribution<double> normal;
+  Recording recording = empty_recording(1, 1);
+  for (Index run = 0; run < runs; ++run) {
+    Eigen::MatrixXd x = Eigen::MatrixXd::Zero(1, samples), u(1, samples);
+    for (double& value : u.reshaped()) value = normal(generator);
+    for (Index k = 0; k + 1 < samples; ++k) x(k + 1) = next(x, u, k, normal(generator));
+    add_run(recording, x, u);
+  }
+  return recording;
 }
 
 /// The training runs of a golden file, x and u one sample per row.

@@ -1,23 +1,20 @@
 // Noise that depends on state and input: the factor on every mode's Q, and whether training runs accept the factor.
 #include <gtest/gtest.h>
 
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <functional>
 #include <numbers>
-#include <random>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/judge/free_run.hpp"
-#include "filter/judge/sample_paths.hpp"
+#include "filter/judge/horizon.hpp"
 #include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
 #include "filter/learn/left_out/folds.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/switching/regression.hpp"
 #include "filter/step/likelihood_gradient.hpp"
-#include "ident/base/linalg.hpp"
-#include "tests/filter/learn/refine_test_support.hpp"
+#include "tests/filter/free_run_test_support.hpp"
+#include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -27,8 +24,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using test::near;
 
-/// Runs of x[k+1] = 0.9 x[k] + 0.1 u[k] + sd w. sd is a function of x[k], u[k] and the number of switches so far in the
-/// run.
+/// Runs of x[k+1] = 0.9 x[k] + 0.1 u[k] + sd w; `rough` switches now and then.
 Recording runs_of(const std::function<double(double x, double u, bool rough)>& sd, unsigned seed = 1, Index runs = 6,
                   Index samples = 500) {
   std::mt19937_64 generator(seed);
@@ -51,24 +47,16 @@ Recording runs_of(const std::function<double(double x, double u, bool rough)>& s
 double follows_input(double, double u, bool) { return 0.01 + 0.03 * std::abs(u); }
 double follows_state(double x, double, bool) { return 0.01 + 0.04 * std::abs(x); }
 
+/// One state. Modes have A = -0.2, -0.5, ...; all other coefficients are 0.1.
 Bank bank_of(const Recording& recording, const LinearStructure& s, double R, Index modes) {
-  const Index n = s.states;
-  Bank bank = bank_frame(recording, s, R * MatrixXd::Identity(n, n));
+  Bank bank = bank_frame(recording, s, MatrixXd::Constant(1, 1, R));
   for (Index j = 0; j < modes; ++j) {
     VectorXd theta = VectorXd::Constant(s.parameters(), 0.1);
-    for (Index i = 0; i < n; ++i) theta(i * s.regressors() + i) = -0.2 - 0.3 * static_cast<double>(j);
-    bank.modes.push_back(make_mode(s, theta, (j == 0 ? 4e-4 : 4e-3) * MatrixXd::Identity(n, n), {}, {}, 1.0));
+    theta(0) = -0.2 - 0.3 * static_cast<double>(j);
+    bank.modes.push_back(make_mode(s, theta, MatrixXd::Constant(1, 1, j == 0 ? 4e-4 : 4e-3), {}, {}, 1.0));
   }
   set_mode_sequence(bank, TransitionMatrix::sticky(modes, 0.9));
   return bank;
-}
-
-TEST(NoiseFactor, IsItsFormulaWithinItsBounds) {
-  const NoiseFactor factor{MatrixXd{{0.5, 0.0, 0.0}, {0.0, 1.0, -2.0}}, Eigen::Vector2d(0.8, -0.3), 0.25};
-  const double expected = 0.8 * std::log(0.5 * 3.0 + 0.1) - 0.3 * std::log(std::abs(0.4 - 2.0 * 0.7) + 0.1) - 0.25;
-  EXPECT_NEAR(factor.log_at(VectorXd::Constant(1, -3.0), Eigen::Vector2d(0.4, 0.7)), expected, 1e-15);
-  EXPECT_NEAR(factor.at(VectorXd::Constant(1, 1e9), Eigen::Vector2d(0.4, 0.7)), 5.0, 1e-14);
-  EXPECT_NEAR(factor.at(VectorXd::Zero(1), Eigen::Vector2d(0.0, 1e9)), 0.2, 1e-14);
 }
 
 /// One exactly measured mode. Every density must be that of a residual with covariance f Q.
@@ -93,58 +81,41 @@ TEST(NoiseFactor, MultipliesTheCovarianceOfEveryStep) {
 /// Half the logarithm of each factor is subtracted.
 TEST(NoiseFactor, LikelihoodIsThatOfRowsOverTheirFactor) {
   const Recording recording = runs_of(follows_input, 4, 3, 200);
-  for (const Index lags : {Index{1}, Index{2}}) {
-    const LinearStructure s{1, 1, true, lags, lags};
-    Bank bank = bank_of(recording, s, 0.0, 3);
-    bank.noise_factor = fit_noise_factor(recording, s);
-    ASSERT_FALSE(bank.noise_factor.empty());
-    const VectorXd rows =
-        predictive_log_densities(gather_training_transitions(recording, s, bank.noise_factor), switching_model(bank));
-    EXPECT_NEAR(training_log_likelihood(bank, recording, {}), rows.sum(), 1e-5 * std::abs(rows.sum()))
-        << lags << " lags";
-  }
+  const LinearStructure s{1, 1, true, 2, 2};
+  Bank bank = bank_of(recording, s, 0.0, 3);
+  bank.noise_factor = fit_noise_factor(recording, s);
+  ASSERT_FALSE(bank.noise_factor.empty());
+  const VectorXd rows =
+      predictive_log_densities(gather_training_transitions(recording, s, bank.noise_factor), switching_model(bank));
+  EXPECT_NEAR(training_log_likelihood(bank, recording, {}), rows.sum(), 1e-5 * std::abs(rows.sum()));
 }
 
 /// A constant input gives a constant factor. The filter's results must then equal those for Q times this factor.
-TEST(ConstantNoiseFactor, IsAsAnotherQ) {
+TEST(NoiseFactor, ThatIsConstantIsAsAnotherQ) {
   Recording recording = runs_of(follows_input, 5, 1, 150);
-  recording.runs.front().input.setOnes();
-  const Trajectory& run = recording.runs.front();
+  Trajectory& run = recording.runs.front();
+  run.input.setOnes();
   const double c = 2.5;
-  for (const double R : {0.0, 1e-3})
-    for (const Index lags : {Index{1}, Index{2}}) {
-      const LinearStructure s{1, 1, true, lags, 1};
-      Bank plain = bank_of(recording, s, R, 2), with_factor = plain;
-      for (Mode& mode : plain.modes) mode.Q *= c;
-      MatrixXd direction = MatrixXd::Zero(1, s.dimension() + 1);
-      direction(0, s.dimension()) = 1.0;
-      with_factor.noise_factor = {direction, VectorXd::Ones(1), std::log(1.1) - std::log(c)};
-      const FilterOptions options;
-      const RunEvaluation expected = evaluate_run(plain, run, options), is = evaluate_run(with_factor, run, options);
-      const std::string what = "R " + std::to_string(R);
-      EXPECT_TRUE(near(is.log_density.tail(140), expected.log_density.tail(140), 1e-8)) << what;
-      EXPECT_TRUE(near(is.mode_probability, expected.mode_probability, 1e-8)) << what;
-      EXPECT_TRUE(near(is.innovation_covariance.rightCols(140), expected.innovation_covariance.rightCols(140), 1e-10))
-          << what;
-      EXPECT_EQ(mode_sequence(with_factor, run, options), mode_sequence(plain, run, options)) << what;
-    }
+  Bank plain = bank_of(recording, {1, 1, true, 2, 1}, 1e-3, 2), with_factor = plain;
+  for (Mode& mode : plain.modes) mode.Q *= c;
+  with_factor.noise_factor = {MatrixXd{{0.0, 0.0, 1.0}}, VectorXd::Ones(1), std::log(1.1) - std::log(c)};
+  const RunEvaluation expected = evaluate_run(plain, run, {}), is = evaluate_run(with_factor, run, {});
+  EXPECT_TRUE(near(is.log_density.tail(140), expected.log_density.tail(140), 1e-8));
+  EXPECT_TRUE(near(is.mode_probability, expected.mode_probability, 1e-8));
+  EXPECT_EQ(mode_sequence(with_factor, run, {}), mode_sequence(plain, run, {}));
 }
 
 TEST(NoiseFactor, OfSamplePathsIsThatOfEachPathsOwnState) {
   const Recording recording = runs_of(follows_input, 6, 1, 60);
   Bank bank = bank_of(recording, test::structure_of(recording), 0.0, 1);
   bank.noise_factor = {MatrixXd{{0.0, 1.0}}, VectorXd::Ones(1), 0.3};
-  FilterState<Eigen::Dynamic> origin{{Gaussian<Eigen::Dynamic>(1)}, VectorXd::Ones(1)};
-  origin.modes[0].mean(0) = 0.2;
-  SamplePaths paths(bank, 40'000, 1);
-  paths.start(origin);
-  paths.step(VectorXd::Constant(1, 1.4));
-  const Eigen::ArrayXd x = paths.states().row(0).transpose().array();
-  const double Q = 4e-4 * std::exp(std::log(1.5) - 0.3);
-  EXPECT_NEAR((x - x.mean()).square().mean(), Q, 0.03 * Q);  // tolerance: four standard errors
-  std::vector<Index> all(static_cast<std::size_t>(paths.count()));
-  std::iota(all.begin(), all.end(), Index{0});
-  EXPECT_NEAR(paths.step_noise(0, all)(0, 0), Q, 1e-12);
+  Trajectory run;
+  run.state = Eigen::RowVector2d(0.2, 0.25);
+  run.input = Eigen::RowVector2d(1.4, 0.0);
+  const FreeRun paths = free_run(test::with_paths(bank), run, {}, test::after(1, 40'000));
+  const double Q = 4e-4 * std::exp(std::log(1.5) - 0.3), e = 0.25 - paths.mean(0, 1);
+  EXPECT_NEAR(std::pow(paths.deviation(0, 1), 2), Q, 0.03 * Q);  // tolerance: four standard errors
+  EXPECT_NEAR(paths.log_density(1), -0.5 * (std::log(2.0 * std::numbers::pi * Q) + e * e / Q), 1e-9);
 }
 
 TEST(NoiseFactor, IsRefusedWhereNothingCanHaveIt) {
@@ -152,71 +123,48 @@ TEST(NoiseFactor, IsRefusedWhereNothingCanHaveIt) {
   Bank bank = bank_of(recording, test::structure_of(recording), 0.0, 2);
   EXPECT_TRUE(has_likelihood_gradient(bank, {}));
   bank.noise_factor = {MatrixXd::Ones(1, 2), VectorXd::Ones(1), 0.0};
-  EXPECT_NO_THROW(validate(bank));
   EXPECT_FALSE(has_likelihood_gradient(bank, {}));
-  EXPECT_THROW(log_likelihood(bank, recording.runs.front(), {.variant = FilterVariant::salvi2025}),
-               std::invalid_argument);
-  bank.noise_factor.directions = MatrixXd::Ones(1, 3);
-  EXPECT_THROW(validate(bank), std::invalid_argument);
-  bank.noise_factor = {MatrixXd::Ones(1, 2), VectorXd::Constant(1, NAN), 0.0};
-  EXPECT_THROW(validate(bank), std::invalid_argument);
+  EXPECT_THROW(log_likelihood(bank, recording.runs[0], {.variant = FilterVariant::salvi2025}), std::invalid_argument);
+  for (const NoiseFactor& wrong : {NoiseFactor{MatrixXd::Ones(1, 3), VectorXd::Ones(1), 0.0},
+                                   NoiseFactor{MatrixXd::Ones(1, 2), VectorXd::Constant(1, NAN), 0.0}}) {
+    bank.noise_factor = wrong;
+    EXPECT_THROW(validate(bank), std::invalid_argument);
+  }
 }
 
 /// Correlation of log f with the true log variance, over a grid of state and input.
 double likeness(const NoiseFactor& factor, double (*sd)(double, double, bool)) {
-  std::vector<double> is, truth;
-  for (double x = -1.4; x < 1.5; x += 0.1)
-    for (double u = -1.4; u < 1.5; u += 0.1) {
-      is.push_back(factor.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)));
-      truth.push_back(2.0 * std::log(sd(x, u, false)));
-    }
-  Eigen::ArrayXd a = Eigen::ArrayXd::Map(is.data(), std::ssize(is)), b = Eigen::ArrayXd::Map(truth.data(), a.size());
-  a -= a.mean();
-  b -= b.mean();
-  return (a * b).sum() / std::sqrt(a.square().sum() * b.square().sum());
+  MatrixXd logs(29 * 29, 2);
+  for (Index i = 0; i < logs.rows(); ++i) {
+    const double x = 0.1 * static_cast<double>(i % 29 - 14), u = 0.1 * static_cast<double>(i / 29 - 14);
+    logs.row(i) << factor.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)), 2.0 * std::log(sd(x, u, false));
+  }
+  logs.rowwise() -= logs.colwise().mean().eval();
+  logs.colwise().normalize();
+  return logs.col(0).dot(logs.col(1));
 }
 
 TEST(FindNoiseFactor, FindsNoiseThatFollowsAnInputOrTheState) {
-  for (const unsigned seed : {1u, 2u, 3u}) {
+  for (const unsigned seed : {1u, 2u, 3u})
     for (const auto sd : {follows_input, follows_state}) {
       const Recording recording = runs_of(sd, seed);
       const FoundNoiseFactor found = find_noise_factor(recording, test::structure_of(recording), 6, 1);
       ASSERT_FALSE(found.factor.empty()) << seed << ": " << found.gain << " +- " << found.standard_error;
       EXPECT_GT(likeness(found.factor, sd), 0.9);
     }
-  }
 }
 
-TEST(FindNoiseFactor, FindsNoneInConstantOrSwitchingNoise) {
+TEST(FindNoiseFactor, FindsNoneInConstantSwitchingOrRoundedNoise) {
   const auto constant = [](double, double, bool) { return 0.03; };
   const auto switching = [](double, double, bool rough) { return rough ? 0.06 : 0.01; };
+  const LinearStructure s{1, 1, false};
   for (const unsigned seed : {1u, 2u, 3u}) {
-    const LinearStructure s{1, 1, false};
     EXPECT_TRUE(find_noise_factor(runs_of(constant, seed), s, 6, 1).factor.empty());
     EXPECT_TRUE(find_noise_factor(runs_of(switching, seed), s, 6, 1).factor.empty());
   }
-}
-
-TEST(FindNoiseFactor, IsNotAskedOfRoundedSamples) {
-  Recording recording = runs_of(follows_input);
-  recording.quantum = VectorXd::Constant(1, 1e-3);
-  EXPECT_TRUE(std::isnan(find_noise_factor(recording, test::structure_of(recording), 6, 1).gain));
-}
-
-/// The result must not depend on the units of states and inputs.
-TEST(FindNoiseFactor, DoesNotDependOnUnits) {
-  const Recording recording = runs_of(follows_input);
-  Recording other = recording;
-  for (Trajectory& run : other.runs) {
-    run.state *= 1e3;
-    run.input *= 1e-2;
-  }
-  const LinearStructure s = test::structure_of(recording);
-  const NoiseFactor a = fit_noise_factor(recording, s), b = fit_noise_factor(other, s);
-  for (const double x : {-0.4, 0.1, 0.7})
-    for (const double u : {-1.2, 0.0, 0.5})
-      EXPECT_NEAR(a.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)),
-                  b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
+  Recording rounded = runs_of(follows_input);
+  rounded.quantum = VectorXd::Constant(1, 1e-3);
+  EXPECT_TRUE(std::isnan(find_noise_factor(rounded, s, 6, 1).gain)) << "not asked";
 }
 
 /// Q is of rows divided by their factor, R is negligible, and runs that judge a fit did not teach its factor.
@@ -238,6 +186,22 @@ TEST(LearnRefinedBank, HasTheFactorOfItsOwnTrainingRuns) {
   const Bank without = learn_refined_bank(recording, fits, one, options, MatrixXd::Zero(1, 1), {}).bank;
   EXPECT_TRUE(without.noise_factor.empty());
   EXPECT_GT(training_log_likelihood(refined.bank, recording, {}), training_log_likelihood(without, recording, {}));
+}
+
+/// The result must not depend on the units of states and inputs.
+TEST(FindNoiseFactor, DoesNotDependOnUnits) {
+  const Recording recording = runs_of(follows_input);
+  Recording other = recording;
+  for (Trajectory& run : other.runs) {
+    run.state *= 1e3;
+    run.input *= 1e-2;
+  }
+  const LinearStructure s = test::structure_of(recording);
+  const NoiseFactor a = fit_noise_factor(recording, s), b = fit_noise_factor(other, s);
+  for (const double x : {-0.4, 0.1, 0.7})
+    for (const double u : {-1.2, 0.0, 0.5})
+      EXPECT_NEAR(a.log_at(VectorXd::Constant(1, x), VectorXd::Constant(1, u)),
+                  b.log_at(VectorXd::Constant(1, 1e3 * x), VectorXd::Constant(1, 1e-2 * u)), 1e-6);
 }
 
 }  // namespace

@@ -11,26 +11,22 @@
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
-/// Refinement of simulated systems with measurement noise, compared with the true parameters.
 namespace modebank::test {
 
 /// A bank for simulation. `theta`: one column per mode. `stay`: diagonal of T. `R`: diagonal of R.
 inline Bank true_bank(const LinearStructure& structure, const Eigen::MatrixXd& theta,
                       const std::vector<Eigen::MatrixXd>& Q, const Eigen::VectorXd& R, double stay) {
   Bank bank = bank_frame(empty_recording(structure.states, structure.inputs), structure, R.asDiagonal());
-  for (Index j = 0; j < theta.cols(); ++j)
-    bank.modes.push_back(make_mode(structure, theta.col(j), Q[static_cast<std::size_t>(j)], {}, {}, 1.0));
-  set_mode_sequence(bank, theta.cols() > 1 ? TransitionMatrix::sticky(theta.cols(), stay) : TransitionMatrix());
+  for (Index j = 0; j < theta.cols(); ++j) bank.modes.push_back(make_mode(structure, theta.col(j), Q[j], {}, {}, 1.0));
+  set_mode_sequence(bank, TransitionMatrix::sticky(theta.cols(), stay));
   return bank;
 }
 
-/// A pendulum (angle, rate) driven by a torque, with one mode per damping. R is `R_factor` times the R of typical
-/// sensors.
+/// A pendulum (angle, rate) driven by a torque, with one mode per damping. R is `R_factor` times that of sensors.
 inline Bank true_pendulum(const std::vector<double>& dampings, double R_factor) {
   const double dt = 0.02, torque = 70.0;
   Eigen::MatrixXd theta(6, std::ssize(dampings));
-  for (Index j = 0; j < theta.cols(); ++j)
-    theta.col(j) << 0.0, dt, 0.0, -9.81 * dt, -dampings[static_cast<std::size_t>(j)] * dt, torque * dt;
+  for (Index j = 0; j < theta.cols(); ++j) theta.col(j) << 0.0, dt, 0.0, -9.81 * dt, -dampings[j] * dt, torque * dt;
   const Eigen::MatrixXd Q = Eigen::Vector2d(2.5e-7, 1e-4).asDiagonal();
   return true_bank({2, 1, false}, theta, std::vector<Eigen::MatrixXd>(dampings.size(), Q),
                    R_factor * Eigen::Vector2d(4e-6, 4e-4), 0.995);
@@ -52,6 +48,15 @@ inline Bank true_scalar(double R_factor) {
                    Eigen::VectorXd::Constant(1, 0.01 * R_factor), 0.965);
 }
 
+/// Three modes, exactly measured.
+inline Bank true_three() {
+  Bank bank = true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.2, -0.6}, {1.0, 3.5, 2.0}},
+                        {Eigen::MatrixXd{{0.0025}}, Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}},
+                        Eigen::VectorXd::Zero(1), 0.96);
+  bank.transition = TransitionMatrix(Eigen::Matrix3d{{0.96, 0.03, 0.01}, {0.02, 0.96, 0.02}, {0.02, 0.02, 0.96}});
+  return bank;
+}
+
 inline Recording simulated_recording(const Bank& truth, Index runs, Index samples, std::uint64_t seed) {
   Recording recording = empty_recording(truth.structure.states, truth.structure.inputs);
   for (Index i = 0; i < runs; ++i) {
@@ -61,35 +66,29 @@ inline Recording simulated_recording(const Bank& truth, Index runs, Index sample
   return recording;
 }
 
-/// A start like that from clustered windows: theta is shrunk, Q includes measurement noise, and stays in a mode are
-/// short.
+/// A start like that from clustered windows: theta is shrunk, Q includes measurement noise, stays are short.
 inline Bank blurred(const Bank& truth, const Recording& recording) {
   Bank start = bank_frame(recording, truth.structure, 1e-3 * truth.R);
   for (Index j = 0; j < truth.mode_count(); ++j)
-    start.modes.push_back(make_mode(truth.structure, 0.9 * truth.theta(j),
-                                    truth.modes[static_cast<std::size_t>(j)].Q + 2.0 * truth.R, {}, {}, 1.0));
-  set_mode_sequence(start,
-                    truth.mode_count() > 1 ? TransitionMatrix::sticky(truth.mode_count(), 0.95) : TransitionMatrix());
+    start.modes.push_back(
+        make_mode(truth.structure, 0.9 * truth.theta(j), truth.modes[j].Q + 2.0 * truth.R, {}, {}, 1.0));
+  set_mode_sequence(start, TransitionMatrix::sticky(truth.mode_count(), 0.95));
   return start;
 }
 
 inline Refinement refine_blurred(const Bank& truth, const Recording& recording, Index folds,
                                  Index max_iterations = 100) {
-  RefineOptions options;
-  options.restarts = 0;
-  options.folds = folds;
-  options.max_iterations = max_iterations;
+  const RefineOptions options{.max_iterations = max_iterations, .restarts = 0, .folds = folds};
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
-/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R, T's diagonal. Modes have the
-/// order of the true modes, because the starts preserve it.
+/// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R if learned, T's diagonal.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;
   for (Index j = 0; j < truth.mode_count(); ++j) {
-    const Mode& mode = bank.modes[static_cast<std::size_t>(j)];
-    const Mode& right = truth.modes[static_cast<std::size_t>(j)];
+    const Mode& mode = bank.modes[j];
+    const Mode& right = truth.modes[j];
     for (Index a = 0; a < truth.structure.parameters(); ++a)
       z.push_back((bank.theta(j)(a) - truth.theta(j)(a)) / mode.standard_error(a));
     for (Index b = 0; b < n; ++b)
@@ -98,14 +97,14 @@ inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
       z.push_back((bank.transition.matrix()(j, j) - truth.transition.matrix()(j, j)) /
                   bank.transition_standard_error(j, j));
   }
-  for (Index i = 0; i < n; ++i) z.push_back((bank.R(i, i) - truth.R(i, i)) / bank.R_standard_error(i, i));
+  for (Index i = 0; i < bank.R_standard_error.rows(); ++i)
+    z.push_back((bank.R(i, i) - truth.R(i, i)) / bank.R_standard_error(i, i));
   return z;
 }
 
 /// Diagnostics of a bank on unseen runs.
-inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed,
-                                           Index samples = 1000) {
-  return row_of(bank, simulated_recording(truth, 4, samples, seed + 1000).runs);
+inline DiagnosticsRow held_out_diagnostics(const Bank& bank, const Bank& truth, std::uint64_t seed) {
+  return row_of(bank, simulated_recording(truth, 4, 1000, seed + 1000).runs);
 }
 
 }  // namespace modebank::test

@@ -1,62 +1,54 @@
 // Learning from measurements that are rounded to multiples of a quantum.
 #include <gtest/gtest.h>
 
-#include <cmath>
-
-#include "filter/judge/evaluate.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
 namespace modebank {
 namespace {
 
-Bank known_system() {
+constexpr double quantum = 0.2;  // two standard deviations of the innovation
+
+Recording rounded_recording(double to) {
   Bank bank = test::single_mode(test::example_bank(1, 1, 1, 0.0), 0);
   bank.structure.intercept = false;
   bank.modes[0].model.A(0, 0) = -0.3;
   bank.modes[0].model.B(0, 0) = 0.5;
   bank.modes[0].Q(0, 0) = 1e-2;
-  return bank;
-}
-
-Recording rounded_recording(double quantum) {
   Recording recording = test::empty_recording(1, 1);
   for (std::uint64_t i = 0; i < 6; ++i) {
-    Trajectory run = test::simulate_bank(known_system(), 500, 70 + i);
-    for (double& value : run.state.reshaped()) value = std::round(value / quantum) * quantum;
-    test::add_run(recording, run.state, run.input);
+    const Trajectory run = test::simulate_bank(bank, 500, 70 + i);
+    test::add_run(recording, ((run.state / to).array().round() * to).matrix(), run.input);
   }
   return recording;
 }
 
+/// Least squares take rounding for noise of what predicts.
 TEST(RoundedStates, TheBaselineFindsWhatLeastSquaresMiss) {
-  const double quantum = 0.2;  // the quantum is two standard deviations of the innovation
   Recording recording = rounded_recording(quantum);
   const LinearStructure structure = test::structure_of(recording);
   const GlobalModel global = fit_global(recording, structure);
   const double error = std::sqrt(global.covariance(0, 0));
-  EXPECT_GT(std::abs(global.theta(0) + 0.3), 3.0 * error) << "rounding counts as noise of what predicts";
+  EXPECT_GT(std::abs(global.theta(0) + 0.3), 3.0 * error);
+  EXPECT_EQ(learn_baseline(recording, global, structure).bank.theta(0), global.theta) << "the quantum is not known";
   recording.quantum.setConstant(1, quantum);
-  const Baseline fit = learn_baseline(recording, global, structure);
-  EXPECT_LT(std::abs(fit.bank.theta(0)(0) + 0.3), 3.0 * error);
-  EXPECT_LT(std::abs(fit.bank.theta(0)(1) - 0.5), 4.0 * std::sqrt(global.covariance(1, 1)));
-  EXPECT_GE(fit.bank.R(0, 0), quantum * quantum / 12.0);
-  EXPECT_NEAR(fit.bank.modes[0].Q(0, 0) + fit.bank.R(0, 0) - quantum * quantum / 12.0, 1e-2, 1e-3);
-  EXPECT_EQ(fit.bank.quantum, recording.quantum);
+  const Bank bank = learn_baseline(recording, global, structure).bank;
+  EXPECT_LT(std::abs(bank.theta(0)(0) + 0.3), 3.0 * error);
+  EXPECT_LT(std::abs(bank.theta(0)(1) - 0.5), 4.0 * std::sqrt(global.covariance(1, 1)));
+  EXPECT_GE(bank.R(0, 0), quantum * quantum / 12.0);
+  EXPECT_NEAR(bank.modes[0].Q(0, 0) + bank.R(0, 0) - quantum * quantum / 12.0, 1e-2, 1e-3);
+  EXPECT_EQ(bank.quantum, recording.quantum);
 }
 
 TEST(RoundedStates, NoiseOnlyFindsWhatLeastSquaresMiss) {
-  const double quantum = 0.2;
   Recording recording = rounded_recording(quantum);
   const LinearStructure structure = test::structure_of(recording);
   const Eigen::MatrixXd R = Eigen::MatrixXd::Zero(1, 1);
-  const double error = fit_global(recording, structure).covariance.diagonal().cwiseSqrt()(0);
+  const double error = std::sqrt(fit_global(recording, structure).covariance(0, 0));
   EXPECT_GT(std::abs(learn_noise_only(recording, structure, R).theta(0)(0) + 0.3), 3.0 * error);
   recording.quantum.setConstant(1, quantum);
   const Bank bank = learn_noise_only(recording, structure, R);
-  ASSERT_EQ(bank.mode_count(), 8);
   for (Index j = 0; j < 8; ++j) EXPECT_LT(std::abs(bank.theta(j)(0) + 0.3), 3.0 * error);
-  EXPECT_EQ(bank.theta(0), bank.theta(7));
   EXPECT_EQ(bank.R(0, 0), quantum * quantum / 12.0);
 }
 
@@ -68,13 +60,6 @@ TEST(RoundedStates, NoiseOnlyIsNotFooledByRepeats) {
   const Bank bank = learn_noise_only(recording, structure, Eigen::MatrixXd::Zero(1, 1));
   EXPECT_LT(bank.theta(0)(0), -0.3 + 0.1);  // errors of rounding are not white here, so theta is far from the truth
   EXPECT_GT(bank.theta(0)(1), 0.1);
-}
-
-TEST(RoundedStates, WithoutAQuantumTheBaselineKeepsLeastSquares) {
-  const Recording recording = rounded_recording(0.2);
-  const LinearStructure structure = test::structure_of(recording);
-  const GlobalModel global = fit_global(recording, structure);
-  EXPECT_EQ(learn_baseline(recording, global, structure).bank.theta(0), global.theta);
 }
 
 }  // namespace

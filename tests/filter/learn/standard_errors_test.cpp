@@ -1,54 +1,36 @@
 // Standard errors of a bank from the gradients of single samples: effect of the filter.
-#include "filter/learn/likelihood/standard_errors.hpp"
-
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <cmath>
 
-#include "filter/learn/switching/em.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "tests/filter/learn/refine_recovery.hpp"
-#include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
-using test::near;
-
-class StandardErrors : public testing::Test {
- protected:
-  Bank truth = test::true_scalar(1.0);
-  Recording recording = test::simulated_recording(truth, 2, 500, 9);
-
-  /// Standard errors of the true parameters for a given recording and filter. All other inputs come from the whole
-  /// recording.
-  Bank errors_in(const Recording& of, const FilterOptions& filter) const {
-    const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
-    const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
-    const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(truth)), prior);
-    const FreeParameters free = all_parameters(truth, sums, prior, false, true, Eigen::VectorXd::Zero(1));
-    return with_standard_errors({of, filter, prior}, free, sums, truth);
-  }
-
-  static void expect_same(const Bank& a, const Bank& b, double tolerance) {
-    for (std::size_t j = 0; j < 2; ++j) {
-      EXPECT_TRUE(near(a.modes[j].parameter_covariance, b.modes[j].parameter_covariance, tolerance));
-      EXPECT_TRUE(near(a.modes[j].Q_standard_error, b.modes[j].Q_standard_error, tolerance));
-    }
-    EXPECT_TRUE(near(a.R_standard_error, b.R_standard_error, tolerance));
-    EXPECT_TRUE(near(a.transition_standard_error, b.transition_standard_error, tolerance));
-  }
-};
+/// Standard errors of the bank's parameters, and of R if it is not zero. Errors given the modes, and the prior, come
+/// from `recording`, the observed information from `of`.
+Bank with_errors(const Bank& bank, const Recording& recording, const Recording& of) {
+  const TrainingTransitions transitions = gather_training_transitions(recording, bank.structure);
+  const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, bank.structure), {}, 1.0);
+  const Bank complete =
+      with_complete_errors(transitions, smooth_modes(transitions, switching_model(bank)), prior, bank);
+  return with_standard_errors({of, {}, prior},
+                              all_parameters(complete, false, bank.R(0, 0) > 0.0, Eigen::VectorXd::Zero(1)), complete);
+}
 
 /// A filter that ignores times makes one step at every gap.
-TEST_F(StandardErrors, AreThoseOfTheFilterThatRuns) {
+TEST(StandardErrors, AreThoseOfTheFilterThatRuns) {
+  Bank truth = test::true_scalar(1.0);
+  const Recording recording = test::simulated_recording(truth, 2, 500, 9);
   truth.dt_s = recording.median_period_s();
-  const Bank plain = errors_in(recording, {});
   Recording gaps = recording;
   for (Trajectory& run : gaps.runs)
     for (Index k = 0; k < run.samples(); ++k)
       run.time_s(k) += 3.0 * truth.dt_s * std::floor(static_cast<double>(k) / 10.0);
-  EXPECT_FALSE(errors_in(gaps, {}).modes[0].parameter_covariance.isApprox(plain.modes[0].parameter_covariance, 0.05));
+  const Eigen::MatrixXd plain = with_errors(truth, recording, recording).modes[0].parameter_covariance;
+  EXPECT_FALSE(with_errors(truth, recording, gaps).modes[0].parameter_covariance.isApprox(plain, 0.05));
 }
 
 /// A mode that occurs only in a later run. The samples before this run are more than the standard errors are computed
@@ -57,17 +39,11 @@ TEST(StandardErrorsOfLongData, RestOnAllRuns) {
   const Bank truth = test::true_bank({1, 1, false}, Eigen::MatrixXd{{-0.2, -0.6}, {1.0, 3.0}},
                                      {Eigen::MatrixXd{{0.01}}, Eigen::MatrixXd{{0.04}}}, Eigen::VectorXd::Zero(1), 1.0);
   Recording recording = test::empty_recording(1, 1);
-  for (const Index mode : {0, 1})
-    recording.runs.push_back(
-        test::simulated_recording(test::single_mode(truth, mode), 1, 30000, 5 + static_cast<std::uint64_t>(mode))
-            .runs.front());
-  const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
-  const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, truth.structure), {}, 1.0);
+  for (const std::size_t mode : {0u, 1u})
+    recording.runs.push_back(test::simulated_recording(test::single_mode(truth, mode), 1, 30000, 5 + mode).runs[0]);
   Bank sticky = truth;
   sticky.transition = TransitionMatrix::sticky(2, 0.999);
-  const SwitchingSums sums = sum_transitions(transitions, smooth_modes(transitions, switching_model(sticky)), prior);
-  const FreeParameters free = all_parameters(sticky, sums, prior, false, false, Eigen::VectorXd::Zero(1));
-  const Bank bank = with_standard_errors({recording, {}, prior}, free, sums, sticky);
+  const Bank bank = with_errors(sticky, recording, recording);
   for (const std::size_t mode : {0u, 1u}) {
     const Trajectory& run = recording.runs[mode];
     Eigen::MatrixXd phi(2, run.transitions());
@@ -84,9 +60,7 @@ TEST(StandardErrorsByDraws, AreAsLargeAsTheErrorsWhereRunsDifferInRoughness) {
   constexpr std::uint64_t draws = 30;
   const Bank truth = test::true_bank({1, 1, false}, Eigen::Vector2d(-0.3, 0.5), {Eigen::MatrixXd{{0.01}}},
                                      Eigen::VectorXd::Zero(1), 1.0);
-  RefineOptions options;
-  options.folds = 3;
-  options.measurement_noise = false;
+  const RefineOptions options{.folds = 3, .measurement_noise = false};
   Eigen::Array2d squares = Eigen::Array2d::Zero();
   for (std::uint64_t draw = 0; draw < draws; ++draw) {
     Recording recording = test::empty_recording(1, 1);

@@ -1,19 +1,13 @@
-// The switching regression, compared with the sum over all sequences of modes, with the filter's likelihood, and with
-// its own laws.
+// The switching regression against the sum over all sequences of modes, the filter's likelihood, and its own laws.
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
-#include <boost/random/normal_distribution.hpp>
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <random>
 
-#include "filter/judge/evaluate.hpp"
 #include "filter/learn/from_mixture/bank.hpp"
-#include "filter/learn/switching/em.hpp"
-#include "filter/learn/switching/regression.hpp"
-#include "ident/base/linalg.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -42,17 +36,12 @@ Recording noisy_runs(Index n, const std::vector<Index>& samples, double missing 
 }
 
 SwitchingRegression two_modes(const LinearStructure& s) {
-  SwitchingRegression model;
-  model.theta.resize(s.parameters(), 2);
-  model.theta.col(0).setConstant(-0.1);
-  model.theta.col(1).setConstant(0.2);
   const Eigen::MatrixXd ones = Eigen::MatrixXd::Ones(s.states, s.states);
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(s.states, s.states);
-  model.Q = {0.05 * identity + 0.02 * ones, 0.3 * identity - 0.05 * ones};
-  model.transition.resize(2, 2);
-  model.transition << 0.9, 0.1, 0.3, 0.7;
-  model.initial = Eigen::Vector2d(0.25, 0.75);
-  return model;
+  return {Eigen::VectorXd::Ones(s.parameters()) * Eigen::RowVector2d(-0.1, 0.2),
+          {0.05 * identity + 0.02 * ones, 0.3 * identity - 0.05 * ones},
+          Eigen::Matrix2d{{0.9, 0.1}, {0.3, 0.7}},
+          Eigen::Vector2d(0.25, 0.75)};
 }
 
 double density(const Eigen::VectorXd& r, const Eigen::MatrixXd& Q) {
@@ -74,7 +63,7 @@ ModePosterior enumerate(const TrainingTransitions& t, const SwitchingRegression&
         const Eigen::MatrixXd beta = coefficients(t.structure, model.theta.col(j));
         const Eigen::VectorXd r =
             (t.data.increments.row(rows.first + k) - t.data.regressors.row(rows.first + k) * beta).transpose();
-        p *= model.transition(mode(k), j) * density(r, model.Q[static_cast<std::size_t>(j)]);
+        p *= model.transition(mode(k), j) * density(r, model.Q[j]);
       }
       total += p;
       of_run.first(mode(0)) += p;
@@ -108,46 +97,28 @@ TEST(SwitchingRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
   const Recording recording = noisy_runs(2, {200, 50});
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const SwitchingRegression model = two_modes(t.structure);
-  Bank bank = bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(2, 2));
-  for (Index j = 0; j < 2; ++j)
-    bank.modes.push_back(make_mode(t.structure, model.theta.col(j), model.Q[static_cast<std::size_t>(j)], {}, {}, 0.5));
-  bank.transition = TransitionMatrix(model.transition);
-  bank.initial_probability = model.initial;
-  double expected = 0.0;
-  for (const Trajectory& run : recording.runs) expected += log_likelihood(bank, run, {});
+  const Bank bank = with_modes(bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(2, 2)), model);
+  const double expected = training_log_likelihood(bank, recording, {});
   EXPECT_NEAR(smooth_modes(t, model).log_likelihood, expected, 1e-6);  // the filter has a lower bound on probabilities
 }
 
-class SwitchingRegressionEm : public testing::TestWithParam<bool> {};
-
-TEST_P(SwitchingRegressionEm, EveryIterationRaisesTheObjective) {
+TEST(SwitchingRegression, EveryIterationRaisesTheObjective) {
   const Recording recording = noisy_runs(2, {150, 90, 60}, 1.0);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-  const GlobalModel global = fit_global(recording, t.structure);
-  const SwitchingPrior prior = switching_prior(t, global, {}, 4.0);
-  SwitchingRegression model = two_modes(t.structure);
-  if (GetParam()) model.theta.col(1) = model.theta.col(0);
-  ModePosterior posterior = smooth_modes(t, model);
-  double before = posterior.log_likelihood + log_prior(prior, GetParam(), model);
-  const double first = before;
-  for (int i = 0; i < 40; ++i) {
-    model = maximise(t.structure, sum_transitions(t, posterior, prior), prior, {.one_theta = GetParam()}, model);
-    posterior = smooth_modes(t, model);
-    const double after = posterior.log_likelihood + log_prior(prior, GetParam(), model);
-    EXPECT_GE(after, before - 1e-9 * std::abs(before)) << "iteration " << i;
-    before = after;
-  }
-  EXPECT_GT(before, first + 10.0);
-  if (GetParam()) {
-    EXPECT_TRUE(near(model.theta.col(0), model.theta.col(1), 0.0));
+  for (const bool one_theta : {false, true}) {
+    SwitchingRegression model = two_modes(t.structure);
+    if (one_theta) model.theta.col(1) = model.theta.col(0);
+    SwitchingFit fit{model};
+    iterate(t, switching_prior(t, fit_global(recording, t.structure), {}, 4.0), {one_theta}, 40, fit);
+    const std::vector<double>& objective = fit.objective;
+    for (std::size_t i = 1; i < objective.size(); ++i)
+      EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1])) << "iteration " << i;
+    EXPECT_GT(objective.back(), objective.front() + 10.0);
+    EXPECT_EQ(fit.model.theta.col(0) == fit.model.theta.col(1), one_theta);
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(OneTheta, SwitchingRegressionEm, testing::Bool(),
-                         [](const auto& test) { return test.param ? "yes" : "no"; });
-
-/// If T has zeros, the mode with the largest density may be impossible. The scale in the log domain must come from a
-/// possible mode.
+/// If T has zeros, the scale in the log domain must come from a possible mode.
 TEST(SwitchingRegression, ImpossibleModesDoNotScaleTheOthersAway) {
   Recording recording = noisy_runs(1, {4});
   recording.runs[0].state << 0.0, 100.0, 100.0, 100.0;
@@ -164,48 +135,32 @@ TEST(SwitchingRegression, ImpossibleModesDoNotScaleTheOthersAway) {
   EXPECT_TRUE(near(posterior.first, Eigen::Vector2d(1.0, 0.0), 1e-15));
 }
 
-TEST(DefiniteInverse, IsEmptyWhereThereIsNone) {
-  EXPECT_TRUE(near(definite_inverse(Eigen::MatrixXd{{2.0, 1.0}, {1.0, 2.0}}).value(),
-                   Eigen::MatrixXd{{2.0 / 3.0, -1.0 / 3.0}, {-1.0 / 3.0, 2.0 / 3.0}}, 1e-15));
-  for (const Eigen::MatrixXd& matrix :
-       {Eigen::MatrixXd{{1.0, 2.0}, {2.0, 1.0}}, Eigen::MatrixXd{{1.0, 1.0}, {1.0, 1.0}}})
-    EXPECT_FALSE(definite_inverse(matrix));
-}
-
-/// A singular covariance has no density and no errors. theta is then not changed.
-TEST(SwitchingRegression, ACovarianceThatIsNotDefiniteIsSaidToBe) {
+/// A covariance that is not definite has no density and no errors. theta is then not changed. One mode without a prior
+/// is the global model.
+TEST(SwitchingRegression, OneModeIsTheGlobalModelAndNotDefiniteNoiseIsSaidToBe) {
   const Recording recording = noisy_runs(2, {100, 80});
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
   const GlobalModel global = fit_global(recording, t.structure);
   const SwitchingPrior prior = switching_prior(t, global, {}, 1.0);
-  SwitchingRegression model;
-  model.theta = global.theta;
-  model.Q = {global.residual_covariance};
-  model.transition = Eigen::MatrixXd::Ones(1, 1);
-  model.initial = Eigen::VectorXd::Ones(1);
-  const SwitchingSums sums = sum_transitions(t, smooth_modes(t, model), prior);
+  const Index p = t.structure.parameters();
+  const SwitchingPrior none{Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p), global.residual_covariance};
+  SwitchingRegression model{
+      global.theta, {global.residual_covariance}, Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Ones(1)};
+  const ModePosterior posterior = smooth_modes(t, model);
+  const auto errors = [&] {
+    const Bank bank = with_modes(bank_frame(recording, t.structure, Eigen::MatrixXd::Zero(2, 2)), model);
+    return with_complete_errors(t, posterior, prior, bank).modes[0].standard_error;
+  };
+  const SwitchingRegression best = maximise(t, posterior, none, {}, model);
+  EXPECT_TRUE(near(best.theta, global.theta, 1e-10));
+  EXPECT_TRUE(near(best.Q[0], global.residual_covariance, 1e-10));
   EXPECT_TRUE(std::isfinite(log_prior(prior, false, model)));
-  EXPECT_TRUE(parameter_covariances(sums, prior, model).front().allFinite());
+  EXPECT_TRUE(errors().allFinite());
   model.Q.front() *= -1.0;
   EXPECT_EQ(log_prior(prior, false, model), -std::numeric_limits<double>::infinity());
-  EXPECT_TRUE(parameter_covariances(sums, prior, model).front().array().isNaN().all());
+  EXPECT_TRUE(errors().array().isNaN().all());
   model.theta.setConstant(0.25);
-  EXPECT_EQ(maximise(t.structure, sums, prior, {.alternations = 1}, model).theta, model.theta);
-}
-
-TEST(SwitchingRegression, OneModeWithoutPriorIsTheGlobalModel) {
-  const Recording recording = noisy_runs(2, {100, 80});
-  const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-  const GlobalModel global = fit_global(recording, t.structure);
-  const Index p = t.structure.parameters();
-  const SwitchingPrior none{Eigen::VectorXd::Zero(p), Eigen::MatrixXd::Zero(p, p), Eigen::MatrixXd::Identity(2, 2)};
-  SwitchingRegression model{Eigen::VectorXd::Zero(p),
-                            {Eigen::MatrixXd::Identity(2, 2)},
-                            Eigen::MatrixXd::Ones(1, 1),
-                            Eigen::VectorXd::Ones(1)};
-  model = maximise(t.structure, sum_transitions(t, smooth_modes(t, model), none), none, {}, model);
-  EXPECT_TRUE(near(model.theta, global.theta, 1e-10));
-  EXPECT_TRUE(near(model.Q[0], global.residual_covariance, 1e-10));
+  EXPECT_EQ(maximise(t, posterior, prior, {.alternations = 1}, model).theta, model.theta);
 }
 
 }  // namespace

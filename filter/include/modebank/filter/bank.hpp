@@ -6,22 +6,11 @@
 #include <vector>
 
 #include "modebank/base/matrix.hpp"
-#include "modebank/base/names.hpp"
 #include "modebank/ident/input_delays.hpp"
 
 namespace modebank {
 
 struct Bank;
-
-/// Which coefficients of a mode drift. all: each coefficient independently. constant: only the constant. gain: one
-/// common factor on all input coefficients, so their ratios do not change. With constant and gain, the other
-/// coefficients are learned within a run from their starting variance.
-enum class Wandering { all, constant, gain };
-
-template <>
-struct EnumNames<Wandering> {
-  static constexpr Names<3> values{"all", "constant", "gain"};
-};
 
 /// A mode that was removed from a bank, with the reason.
 struct ScreenedMode {
@@ -39,10 +28,10 @@ namespace modebank::filter {
 /// u are the stacked samples z = [x[k]; x[k-1]; ...] and v = [u[k+1-delay]; ...].
 struct Mode {
   Matrix A;                     ///< n x n, increment form; the full form is I + A
-  Matrix B;                     ///< n x m
-  std::vector<double> c;        ///< n
+  Matrix B;                     ///< n x m; empty: zero
+  std::vector<double> c;        ///< n; empty: zero
   Matrix Q;                     ///< n x n, covariance of the process noise per step [state unit^2]
-  Matrix parameter_covariance;  ///< p x p, covariance of theta over the mode's windows; an empty matrix means zero
+  Matrix parameter_covariance;  ///< p x p, covariance of theta over the mode's windows; empty: zero
   double weight = 1.0;          ///< share of the windows that belong to this mode
 };
 
@@ -53,13 +42,12 @@ struct StateDependentTransition {
   std::vector<double> reference;  ///< d, the value of z for which the transition matrix holds
 };
 
-/// Process noise that depends on state and input. In a step from z the covariance is Q exp(sum_i weights_i
-/// log(|directions_i z| + 0.1) - offset). The factor on Q is limited to 0.2 to 5. z holds the state and the acting
-/// inputs. If empty, Q is constant.
+/// Process noise that depends on state and input: in a step from z, Q exp(sum_i weights_i log(|directions_i z| + 0.1) -
+/// offset), with a factor of 0.2 to 5. z holds the state and the acting inputs. If empty, Q is constant.
 struct NoiseByState {
   Matrix directions;            ///< d x (n + acting inputs), one direction per row
   std::vector<double> weights;  ///< d
-  double offset = 0.0;          ///< offset, subtracted in the exponent
+  double offset = 0.0;          ///< subtracted in the exponent
 };
 
 /// Drift of theta within a run, per regressor of [z; v; (1)], of a single mode with RunningNoise (the competitor
@@ -68,9 +56,7 @@ struct CoefficientDrift {
   std::vector<double> scale;  ///< size of each regressor; the drift of its coefficient is in units of 1 / size
   double rate = 0.0;          ///< variance that each step adds to a coefficient, in units of Q, >= 0
   double start = 0.0;         ///< variance of a coefficient at the start of a run, in units of Q, >= 0
-  double leak = 1.0;  ///< factor by which each step multiplies a coefficient's difference from the mode's coefficient,
-                      ///< in (0, 1]
-  Wandering wandering = Wandering::all;  ///< which coefficients drift
+  double leak = 1.0;          ///< factor per step on a coefficient's difference from the mode's coefficient, in (0, 1]
 };
 
 /// Running noise variance of a single mode that drifts (the competitor `drifting`). The variance v of each measured
@@ -81,38 +67,32 @@ struct RunningNoise {
   double forgetting = 0.9;           ///< forgetting factor, in [0, 1]
   double degrees_of_freedom = 0.0;   ///< degrees of freedom of Student's t, above 2; 0 for a normal distribution
   std::vector<double> horizon = {};  ///< horizons in samples, ascending, at least 2
-  std::vector<double> factor = {};   ///< per horizon: factor on the variance of forecasts from this horizon up to the
-                                     ///< next one
-  Matrix level;  ///< n_y x J, variances of J noise levels in units of v, which switch by a Markov chain; empty: one
-                 ///< level of 1
+  std::vector<double> factor = {};   ///< factor on the variance of forecasts from each horizon up to the next one
+  Matrix level;       ///< n_y x J, variances of J noise levels in units of v, which switch by a Markov chain; empty: 1
   Matrix transition;  ///< J x J, row i: probabilities of the next level after level i
 };
 
-/// All numbers of a bank, for writing or reading it: K modes, their transitions, and the measurement y = C x + v with v
-/// ~ N(0, R).
+/// All numbers of a bank: K modes, their transitions, and the measurement y = C x + v with v ~ N(0, R).
 struct BankDescription {
   std::vector<Mode> modes;      ///< K >= 1
-  Matrix C;                     ///< n_y x n; an empty matrix means the identity
+  Matrix C;                     ///< n_y x n; empty: the identity
   Matrix R;                     ///< n_y x n_y, covariance of the measurement noise [state unit^2]
-  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0: the signal is continuous; empty:
-                                ///< all signals are continuous
+  std::vector<double> quantum;  ///< n_y, spacing of measured values [state unit]; 0 or empty: continuous
   Matrix transition;            ///< K x K, row i: probabilities of the next mode after mode i
   StateDependentTransition state_dependent_transition;  ///< empty: constant
-  std::vector<double> initial_probability;              ///< K; if empty, all modes are equally probable
+  std::vector<double> initial_probability;              ///< K; empty: all modes are equally probable
   std::vector<std::string> state_names;                 ///< names of the measured states; may be empty
   std::vector<std::string> input_names;                 ///< names of the inputs; may be empty
   double dt_s = 0.0;                                    ///< sample period of one step [s]; 0 if it is not fixed
   std::ptrdiff_t inputs = 0;                            ///< number of input channels
-  std::ptrdiff_t state_lags = 1;                        ///< number of state samples from which the next one is
-                                                        ///< predicted
-  std::ptrdiff_t input_lags = 1;                        ///< number of input samples that act on one transition
-  InputDelays input_delay = 1;                          ///< number of samples from each input to its first effect
-  bool intercept = false;                               ///< whether c is part of theta
-  std::vector<double> centre;                           ///< measured states, then inputs: the point about which theta
-                                                        ///< is taken; empty: zero. A, B and c are not changed
-  NoiseByState noise_by_state;                          ///< empty: constant
-  CoefficientDrift drift;                               ///< empty: none
-  RunningNoise running_noise;                           ///< if empty, the noise is Q
+  std::ptrdiff_t state_lags = 1;  ///< number of state samples from which the next one is predicted
+  std::ptrdiff_t input_lags = 1;  ///< number of input samples that act on one transition
+  InputDelays input_delay = 1;    ///< number of samples from each input to its first effect
+  bool intercept = false;         ///< whether c is part of theta
+  std::vector<double> centre;     ///< measured states, then inputs: the point about which theta is taken; empty: zero
+  NoiseByState noise_by_state;    ///< empty: constant
+  CoefficientDrift drift;         ///< empty: none
+  RunningNoise running_noise;     ///< empty: the noise is Q
 };
 
 /// A bank of modes; immutable and cheap to copy.

@@ -7,16 +7,14 @@ namespace modebank::filter {
 
 /// Weights of several forecasters of one run by their past success: dynamic model averaging (Raftery, Karny & Ettler
 /// 2010, Technometrics 52(1), equations 15 and 16). Past log densities are discounted with the paper's factor 0.99 per
-/// sample. The starting weights come from other runs and are not discounted. A run that is too short to separate the
-/// forecasters therefore keeps its starting weights. Forecasts h samples ahead overlap, so each counts as 1/h of a
-/// sample. Use one object per run and horizon.
+/// sample; the starting weights are not, so a run that is too short to separate the forecasters keeps them. Forecasts h
+/// samples ahead overlap, so each counts as 1/h of a sample. Use one object per run and horizon.
 class ForecastWeights {
  public:
   /// Starts with equal weights. `horizon`: samples ahead, at least 1. Throws std::invalid_argument for a smaller
   /// horizon and for zero forecasters.
   explicit ForecastWeights(std::size_t forecasters, std::ptrdiff_t horizon = 1);
-  /// Starts with the given weights, for example those of other runs. Their sum may differ from one. Throws
-  /// std::invalid_argument for a negative weight.
+  /// Starts with these weights, whose sum may differ from one. Throws std::invalid_argument for a negative weight.
   ForecastWeights(const std::vector<double>& start, std::ptrdiff_t horizon);
 
   /// Updates the weights with a measured sample. `log_densities` [nats]: the log density of this sample under each
@@ -34,18 +32,16 @@ class ForecastWeights {
   /// equal.
   static std::vector<double> stacked(const std::vector<std::vector<double>>& log_densities);
 
-  /// Weights of the forecasters that have a value (not NaN), normalised to sum one. The other forecasters have weight
-  /// 0. If no forecaster has a value, all weights are 0.
+  /// Weights of the forecasters that have a value (not NaN), normalised to sum one. The others have weight 0.
   static std::vector<double> spoken_weights(const std::vector<double>& weights,
                                             const std::vector<double>& log_densities);
-  /// Log of the weighted mean of the densities [nats], with spoken_weights as weights. NaN if no forecaster has a
-  /// value.
+  /// Log of the mean density, weighted by spoken_weights [nats]. NaN if no forecaster has a value.
   static double mixed_log_density(const std::vector<double>& weights, const std::vector<double>& log_densities);
 
  private:
   double share_of_a_sample_;
-  std::vector<double> start_, evidence_, weights_;  ///< log weights at the start, discounted log densities, present
-                                                    ///< weights
+  /// Log weights at the start, discounted log densities, present weights.
+  std::vector<double> start_, evidence_, weights_;
 
   void normalise();
 };

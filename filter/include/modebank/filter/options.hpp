@@ -12,9 +12,8 @@ struct EnumNames<FilterVariant> {
   static constexpr Names<3> values{"imm", "salvi2025", "kf"};
 };
 
-/// How a bank is run. Defaults are the recommended method. A bank is a discrete model with step bank.dt_s. A longer
-/// time between two samples becomes several prediction steps with the input held. Their number is rounded and at least
-/// one.
+/// How a bank is run. A bank is a discrete model with step bank.dt_s. A longer time between two samples becomes several
+/// prediction steps with the input held. Their number is rounded and at least one.
 struct FilterOptions {
   FilterVariant variant = FilterVariant::imm;  ///< how the modes' estimates are mixed
 

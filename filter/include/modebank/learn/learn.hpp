@@ -13,8 +13,8 @@
 
 namespace modebank::learn {
 
-/// Parameters and standard errors of a bank of K modes. A mode is a linear model with p parameters theta: A (row by
-/// row), B and c of each measured state in turn. For a motion model, theta are the parameters of its linearisation.
+/// Parameters and standard errors of a bank of K modes, with p parameters theta each: A (row by row), B and c of each
+/// measured state in turn. For a motion model, theta are the parameters of its linearisation.
 struct Uncertainty {
   std::vector<std::string> parameter_names;         ///< p
   Matrix theta;                                     ///< p x K
@@ -24,37 +24,34 @@ struct Uncertainty {
   Matrix transition_standard_error;                 ///< K x K; empty without refinement
   std::vector<std::string> motion_parameter_names;  ///< parameters of a motion model; empty for linear models
   Matrix motion_theta;                              ///< parameters of a motion model, one mode per column
-  Matrix motion_theta_standard_error;               ///< standard errors of motion_parameters
+  Matrix motion_theta_standard_error;               ///< of the same shape
 };
 
-/// How the bank was learned from M windows.
 struct Origin {
-  std::vector<std::string> features;  ///< F, clustered features of a window
-  mixture::Mixture mixture;           ///< mixture of the windows
-  std::vector<Candidate> candidates;  ///< candidates for the mixture
-  std::vector<int> labels;  ///< M in the order of ident::fit_windows: component of each window; -1 if a window has no
-                            ///< component
+  std::vector<std::string> features;         ///< F, clustered features of a window
+  mixture::Mixture mixture;                  ///< mixture of the windows
+  std::vector<Candidate> candidates;         ///< candidates for the mixture
+  std::vector<int> labels;                   ///< M, component of each window of ident::fit_windows; -1: none
   std::vector<ScreenedMode> screened;        ///< components and fits that did not become modes
   std::vector<RefineCandidate> refinements;  ///< starts of the refinement and their scores; empty without refinement
-  std::vector<double> objective;             ///< penalised log-likelihood, one value per iteration of the refinement,
-                                             ///< before the iteration
+  std::vector<double> objective;             ///< penalised log-likelihood before each iteration of the refinement
   MeasurementStage measurement;              ///< results of the refinement with measurement noise
 };
 
 /// A bank, ready for BankFilter, with its uncertainty and origin.
 struct Learned {
-  filter::Bank bank;            ///< the modes
-  filter::Bank baseline;        ///< reference competitor: one Kalman filter for all runs
-  double log_likelihood = 0.0;  ///< log-likelihood of the bank with LearnOptions::filter on the training runs [nats]
-  double baseline_log_likelihood = 0.0;  ///< log-likelihood of the baseline on the same samples [nats]
-  Uncertainty uncertainty;               ///< uncertainty of the bank
-  Origin origin;                         ///< origin of the bank
+  filter::Bank bank;                     ///< the modes
+  filter::Bank baseline;                 ///< reference competitor: one Kalman filter for all runs
+  double log_likelihood = 0.0;           ///< of the bank with LearnOptions::filter on the training runs [nats]
+  double baseline_log_likelihood = 0.0;  ///< of the baseline on the same samples [nats]
+  Uncertainty uncertainty;               ///< of the bank
+  Origin origin;                         ///< of the bank
 };
 
-/// Fits windows, clusters them and learns a bank from the training runs, on all cores. The results equal those of
-/// `modebank run` for the same options, with any number of threads. Log-likelihoods begin with each run's second
-/// sample. Throws std::invalid_argument for an option out of range and for runs whose sizes do not fit. Throws
-/// DataError (modebank/base/error.hpp) if nothing can be learned from these runs.
+/// Learns a bank from the training runs, on all cores. The results equal those of `modebank run` for the same options,
+/// with any number of threads. Log-likelihoods begin with each run's second sample. Throws std::invalid_argument for an
+/// option out of range and for runs whose sizes do not fit, DataError (modebank/base/error.hpp) if nothing can be
+/// learned.
 Learned learn_bank(const RecordedRuns& runs, const LearnOptions& options = {});
 
 /// Like `learn_bank`, but for the caller's own motion model; options.window.model is ignored. Refinement is for linear

@@ -19,9 +19,8 @@ struct EnumNames<ThetaSource> {
   static constexpr Names<2> values{"pooled", "mean"};
 };
 
-/// Source of the transition matrix. labels: transitions between labels of neighbouring windows. stay:
-/// BankOptions::stay. logit: like labels; in a refined bank the transition probabilities also depend on state and
-/// input, if this raises the score of training runs that were left out.
+/// Source of T. labels: transitions between labels of neighbouring windows. stay: BankOptions::stay. logit: as labels,
+/// but T of a refined bank depends on state and input, if this raises the score of training runs that were left out.
 enum class TransitionSource { labels, stay, logit };
 
 template <>
@@ -30,9 +29,8 @@ struct EnumNames<TransitionSource> {
 };
 
 /// Refinement after the mixture: none, or expectation-maximisation of the switching model. automatic: em, unless it is
-/// impossible or would undo another option. em is impossible for the modes of a motion model. It would undo a theta, Q
-/// or T that is given or taken from the mixture (ThetaSource::mean, process_variance,
-/// TransitionSource::stay).
+/// impossible (for the modes of a motion model) or would undo another option: a theta, Q or T that is given or taken
+/// from the mixture (ThetaSource::mean, process_variance, TransitionSource::stay).
 enum class Refine { automatic, none, em };
 
 template <>
@@ -40,29 +38,21 @@ struct EnumNames<Refine> {
   static constexpr Names<3> values{"auto", "none", "em"};
 };
 
-/// Options of a bank's refinement. Defaults are the recommended method.
+/// Options of a bank's refinement.
 struct RefineOptions {
   std::ptrdiff_t max_iterations = 100;  ///< iteration limit of expectation-maximisation
   double tolerance = 1e-6;              ///< stopping tolerance: smallest gain of the objective [nats per transition]
-  std::ptrdiff_t restarts = 2;    ///< number of random starts from stretches of the runs, for each number of modes; the
-                                  ///< mixture's start is tried in addition
-  std::ptrdiff_t most_modes = 0;  ///< largest number of modes of the random starts. The search tries this number, three
-                                  ///< quarters of it and so on, down to the mixture's number. With 0, it tries only the
-                                  ///< mixture's number
-  std::ptrdiff_t folds = 6;       ///< number of parts of the cross-validation; 1 turns it off, and every start runs to
-                                  ///< convergence
-  bool measurement_noise = true;  ///< true: R maximises the filter's likelihood of the training runs; false: R of the
-                                  ///< start is kept
+  std::ptrdiff_t restarts = 2;          ///< random starts from stretches of the runs, for each number of modes
+  std::ptrdiff_t most_modes = 0;        ///< largest number of modes of the random starts; then three quarters of it and
+                                        ///< so on, down to the mixture's number. With 0, the mixture's number alone
+  std::ptrdiff_t folds = 6;  ///< parts of the cross-validation; 1 turns it off, and every start runs to convergence
+  bool measurement_noise = true;  ///< whether R maximises the filter's likelihood; false: R of the start is kept
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
-  bool state_dependent_transition = false;  ///< whether transition probabilities may depend on state and input
-                                            ///< (TransitionSource::logit)
-  bool one_theta = false;                   ///< whether all modes share theta and differ only in Q (the competitor with
-                                            ///< one motion)
-  bool noise_by_input = false;         ///< whether all Q share one factor that follows state and input; R then stays
-                                       ///< negligible
-  std::uint64_t seed = 1;              ///< seed of the random starts
-  std::ptrdiff_t transitions = 20000;  ///< largest number of transitions to learn from; they lie in stretches drawn
-                                       ///< with the seed; 0 takes all transitions
+  bool state_dependent_transition = false;  ///< whether T may depend on state and input (TransitionSource::logit)
+  bool one_theta = false;                   ///< whether all modes share theta and differ only in Q (`one_motion`)
+  bool noise_by_input = false;  ///< whether all Q share one factor that follows state and input; R is then negligible
+  std::uint64_t seed = 1;       ///< of the random starts
+  std::ptrdiff_t transitions = 20000;  ///< most transitions to learn from, in stretches drawn by the seed; 0: all
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.
@@ -83,11 +73,9 @@ struct LearnOptions {
   FitOptions window;              ///< how windows are cut and fitted
   ClusterOptions mixture;         ///< how windows are clustered
   BankOptions bank;               ///< how the mixture becomes a bank
-  FilterOptions filter;           ///< filter of the bank; with variant `kf`, the bank is the baseline (a single Kalman
-                                  ///< filter)
+  FilterOptions filter;           ///< filter of the bank; with variant `kf`, the bank is the baseline
   std::uint64_t seed = 1;         ///< the only seed; it replaces the seeds in `window` and `bank`
-  bool search_lags = false;       ///< whether lags and delay are chosen by cross-validation on training runs. They then
-                                  ///< replace those in `window`. Not for motion models
+  bool search_lags = false;       ///< whether cross-validation chooses lags and delay; not for motion models
   bool automatic_length = false;  ///< whether window.length is set from the number of regressors
   bool automatic_step = false;    ///< whether window.step is set so that there are about 100,000 windows
 };
