@@ -3,8 +3,9 @@
 # take 2.3 GB.
 JOBS := $(shell awk -v cores=$$(nproc) '/^MemAvailable/ { most = int($$2 / 2500000); print most < 1 ? 1 : most < cores ? most : cores }' /proc/meminfo)
 DEMO := build/demo
+PYTHON := /usr/bin/python3
 
-.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks uncertainty recovery evidence rule systems plants scale cost features check format lint shellcheck tidy tidy-changed seeds sanitize arm64 picture clean fuzz docs docs-examples docs-update reference-ini
+.PHONY: all api build demo packages package-test dist dist-test pip-test test test-long bench-programs bench benchmarks uncertainty recovery evidence rule systems plants scale cost features check format lint shellcheck tidy tidy-changed seeds sanitize sanitize-short arm64 picture clean fuzz docs docs-examples docs-update reference-ini dev list-checks nightly debian house
 
 all: build
 
@@ -29,7 +30,6 @@ build/dev/build.ninja: CMakePresets.json
 	cmake --preset dev >/dev/null
 	@touch $@
 
-.PHONY: dev
 dev: build/dev/build.ninja
 	cmake --build --preset dev -j $(JOBS) --target modebank
 
@@ -64,7 +64,7 @@ test test-long: packages-build packages-test build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_TESTS=ON -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS)
 	@status=0; ctest --preset $(if $(findstring long,$@),long,release) -j $(JOBS) --output-junit $(CURDIR)/build/$@.xml || status=$$?; \
-	/usr/bin/python3 tests/skipped.py build/$@.xml || status=1; exit $$status
+	$(PYTHON) tests/skipped.py build/$@.xml || status=1; exit $$status
 
 bench-programs: packages-build build/build.ninja
 	cmake --preset release -DMODEBANK_BUILD_BENCHMARKS=ON >/dev/null
@@ -76,14 +76,14 @@ bench: bench-programs
 	build/compare_imm
 	OMP_NUM_THREADS=1 build/compare_em 5
 	build/compare_em memory
-	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 /usr/bin/python3 tests/bench/em_peers.py build/compare_em
+	-OMP_NUM_THREADS=1 OPENBLAS_NUM_THREADS=1 $(PYTHON) tests/bench/em_peers.py build/compare_em
 
 # Public benchmarks, with data in MODEBANK_DATA: one table each, build/benchmarks/NAME.md; half an hour of a processor.
 BENCHMARKS := $(notdir $(basename $(shell grep -l '^def main' tests/bench/benchmarks/*.py)))
 benchmarks: $(BENCHMARKS:%=build/benchmarks/%.md)
 build/benchmarks/%.md: build FORCE
 	@mkdir -p build/benchmarks
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/benchmarks/$*.py build/modebank build/benchmarks/archives > $@.new && mv $@.new $@
+	OMP_NUM_THREADS=1 $(PYTHON) tests/bench/benchmarks/$*.py build/modebank build/benchmarks/archives > $@.new && mv $@.new $@
 	@cat $@
 FORCE:
 
@@ -97,44 +97,44 @@ recovery: bench-programs
 
 # How often modes are claimed where there are none, and found where there are some; hours on two cores.
 evidence: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_evidence.py build/modebank --table build/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
+	OMP_NUM_THREADS=1 $(PYTHON) tests/bench/measure_evidence.py build/modebank --table build/evidence.csv --revision $$(git log -1 --format=%h -- app filter ident io mixture)
 
 # How often the rule for additions to a bank accepts false ones, and true ones; half an hour of two processors.
 rule: bench-programs
 	build/measure_rule 60 > build/rule.csv
-	/usr/bin/python3 tests/bench/rule_table.py build/rule.csv
+	$(PYTHON) tests/bench/rule_table.py build/rule.csv
 
 # Loss against the filter with the true parameters, for known systems; about three hours of a processor.
 systems: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_systems.py build/modebank
+	OMP_NUM_THREADS=1 $(PYTHON) tests/bench/measure_systems.py build/modebank
 
-# How often the linear stage is right about 400 simulated plants.
+# How often the linear stage is right about 400 simulated plants, and the whole program about 90 others: hours, but
+# what is done is kept.
 plants: build
-	/usr/bin/python3 tests/bench/plants.py build/modebank --seed $(or $(SEED),1)
+	@status=0; for part in "" --whole; do \
+	$(PYTHON) tests/bench/plants.py build/modebank --seed $(or $(SEED),1) $$part || status=1; done; exit $$status
 
 # Time and memory of five million rows and of ten thousand runs, for docs/results/speed.md; ten minutes of two
 # processors and 10 GB of disk.
 scale: build
-	/usr/bin/python3 tests/bench/scale.py build/modebank build/scale
+	$(PYTHON) tests/bench/scale.py build/modebank build/scale
 
 # Processor time against states, lags and samples, for docs/results/speed.md; half an hour of a processor.
 cost: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_cost.py build/modebank build/cost
+	OMP_NUM_THREADS=1 $(PYTHON) tests/bench/measure_cost.py build/modebank build/cost
 
 # Which features of windows with many lags find the modes, for docs/results/simulated.md; ten minutes of a processor.
 features: build
-	OMP_NUM_THREADS=1 /usr/bin/python3 tests/bench/measure_features.py build/modebank build/features
+	OMP_NUM_THREADS=1 $(PYTHON) tests/bench/measure_features.py build/modebank build/features
 
 # Everything that CI runs beside `make test`; .ci/run times each of these.
 CHECKS := test-long format lint shellcheck docs tidy-changed sanitize-short
-.PHONY: list-checks
 check: $(CHECKS)
 list-checks:
 	@echo $(CHECKS)
 
 # All other tests, and `make` and `make test` on Debian 13; hours. Continues after a failure. The table is
 # build/nightly/table.md. STEPS="slurm arm64" runs only these steps and keeps the results of the others.
-.PHONY: nightly debian
 nightly: packages-build packages-test packages-check packages-nightly
 	tests/nightly $(STEPS)
 
@@ -163,7 +163,7 @@ api: packages-check
 docs: packages-docs build api
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
-	/usr/bin/python3 -m sphinx -q -E -a -W --keep-going -b html docs build/docs
+	$(PYTHON) -m sphinx -q -E -a -W --keep-going -b html docs build/docs
 
 # Runs what README and the tutorials print and compares the output; docs-update writes the present output into them.
 DATA := $(or $(MODEBANK_DATA),../shared/data)
@@ -171,7 +171,7 @@ PAGES := README.md docs/tutorials/*.md
 docs-examples docs-update: packages-test packages-nightly build
 	cmake --preset release -DMODEBANK_PYTHON=ON >/dev/null
 	cmake --build --preset release -j $(JOBS) --target modebank_python
-	/usr/bin/python3 tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
+	$(PYTHON) tests/docs/examples.py $(if $(findstring update,$@),--update) --data $(DATA) build $(PAGES)
 
 # Common misspellings, and style of the pages' scripts. NODE_PATH is where node finds
 # Debian's modules.
@@ -202,7 +202,6 @@ seeds: packages-build packages-test build/build.ninja
 
 # Address and undefined-behaviour sanitizers: sanitize-short tests io and the filters' steps, as CI does; sanitize runs
 # all tests.
-.PHONY: sanitize-short
 sanitize-short: packages-build packages-test
 	cmake --preset sanitize >/dev/null
 	cmake --build --preset sanitize -j $(JOBS) --target sanitize_short
@@ -222,16 +221,15 @@ fuzz: packages-build packages-test
 # The picture of docs/index.md: a held-out run of the demo.
 picture: build
 	build/modebank demo -o $(DEMO)
-	/usr/bin/python3 docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg
+	$(PYTHON) docs/pictures/demo.py $(DEMO)/demo.h5 > docs/pictures/demo.svg
 
 # configs/reference.ini: every key at its default.
 reference-ini: build
-	/usr/bin/python3 docs/reference_ini.py > configs/reference.ini
+	$(PYTHON) docs/reference_ini.py > configs/reference.ini
 
 # tests/house.csv: lines, files and tokens of each room, which the test Structure checks.
-.PHONY: house
 house:
-	/usr/bin/python3 tests/house.py
+	$(PYTHON) tests/house.py
 
 clean:
 	rm -rf build

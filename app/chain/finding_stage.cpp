@@ -6,6 +6,7 @@
 #include "app/text/finding_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/operating_point.hpp"
+#include "filter/step/motions.hpp"
 #include "ident/check/run_check.hpp"
 #include "ident/check/stream_check.hpp"
 #include "ident/model/equations.hpp"
@@ -86,7 +87,8 @@ std::optional<Finding> find_modes(const Archive& archive) {
   Finding finding =
       judge_modes({*archive.bank, role, densities_of(*bank, *archive.recording, role), competitors, archive.summary,
                    archive.horizons, resolutions(archive.bank->quantum, *archive.recording, role), archive.free_runs,
-                   archive.step_scatter, archive.diagnostics, error_pattern(archive, *bank)});
+                   archive.step_scatter, archive.diagnostics, error_pattern(archive, *bank),
+                   archive.baseline ? response_samples(*archive.baseline) : 1.0});
   if (finding.without_noise && archive.baseline) finding.coefficients = coefficients_of(*archive.baseline);
   if (finding.description == Description::one_nonlinear_motion && archive.nonlinear) {
     const Bank& bent = *archive.nonlinear;

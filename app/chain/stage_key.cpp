@@ -71,7 +71,7 @@ MODEBANK_KEY_FIELDS(EmOptions, covariance, restarts, split_merge, tolerance, max
 MODEBANK_KEY_FIELDS(SelectionOptions, components, em)
 MODEBANK_KEY_FIELDS(ClusterOptions, selection, features, windows, over_switch, error_aware)
 MODEBANK_KEY_FIELDS(RefineOptions, max_iterations, tolerance, restarts, most_modes, folds, measurement_noise, screen,
-                    state_dependent_transition, one_theta, noise_by_input, seed, transitions)
+                    state_dependent_transition, seed, transitions)
 MODEBANK_KEY_FIELDS(BankOptions, theta, transition, stay, process_variance, measurement_variance, screen, refine, em)
 MODEBANK_KEY_FIELDS(FilterOptions, variant)
 MODEBANK_KEY_FIELDS(FreeRunOptions, samples, paths, seed)
@@ -84,7 +84,7 @@ MODEBANK_KEY_FIELDS(StageLags, state_lags, input_lags, input_delay)
 MODEBANK_KEY_FIELDS(ArmaxOrder, differences, state_lags, input_lags, noise_lags, intercept)
 MODEBANK_KEY_FIELDS(ArmaxStructure, order, delays)
 MODEBANK_KEY_FIELDS(OtherLags, linear, one_motion, drifting, armax)
-MODEBANK_KEY_FIELDS(CompetitorInputs, window, terms, em, lags, noise_by_input, measurement_variance, all)
+MODEBANK_KEY_FIELDS(CompetitorInputs, window, terms, em, lags, measurement_variance, all)
 MODEBANK_KEY_FIELDS(BankInputs, window, bank, lags, horizon, simulate, filter, one_model, one_motion, drifting,
                     terms_stated)
 MODEBANK_KEY_FIELDS(StructureInputs, searched, window, with_modes)

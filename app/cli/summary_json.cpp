@@ -2,8 +2,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "app/text/mode_families.hpp"
 #include "app/text/mode_names.hpp"
+#include "app/text/motions.hpp"
 
 namespace modebank::app {
 namespace {
@@ -30,23 +30,25 @@ json forecasts_json(const std::vector<NamedForecast>& forecasts) {
   return list;
 }
 
-json modes_json(const Archive& archive, const std::vector<ModeFamily>& families) {
+json modes_json(const Archive& archive) {
   json list = json::array();
-  const std::vector<Index> family = family_of_modes(families);
   for (const UsedMode& mode : used_modes(archive))
     list.push_back({{"mode", mode.mode},
                     {"name", mode_cell(archive.mode_names, mode.mode)},
-                    {"family", family[static_cast<std::size_t>(mode.mode)]},
+                    {"motion", archive.bank->motion_of(mode.mode)},
                     {"use", mode.use},
                     {"stay_s", mode.stay_s}});
   return list;
 }
 
-json summary_families(const std::vector<ModeFamily>& families) {
+json summary_motions(const Archive& archive) {
   json list = json::array();
-  for (const ModeFamily& family : families)
-    list.push_back(
-        {{"title", family.title()}, {"modes", family.modes}, {"use", family.use}, {"stay_s", family.stay_s}});
+  for (const Motion& motion : motions_of(archive))
+    list.push_back({{"motion", motion.number},
+                    {"title", motion.title()},
+                    {"modes", motion.modes},
+                    {"use", motion.use},
+                    {"stay_s", motion.stay_s}});
   return list;
 }
 
@@ -54,7 +56,6 @@ json summary_families(const std::vector<ModeFamily>& families) {
 
 json summary_json(const Archive& archive, const Settings& settings) {
   const FirstScreen screen = make_first_screen(archive, settings);
-  const std::vector<ModeFamily> families = mode_families(archive);
   json answer = nullptr;
   if (screen.answer) answer = name_of(*screen.answer);
   return {{"read", screen.read},
@@ -78,8 +79,8 @@ json summary_json(const Archive& archive, const Settings& settings) {
           {"errors", errors_json(screen.errors)},
           {"free_run_start", screen.free_run_start},
           {"fit", screen.fit},
-          {"modes", modes_json(archive, families)},
-          {"families", summary_families(families)},
+          {"modes", modes_json(archive)},
+          {"motions", summary_motions(archive)},
           {"role", name_of(screen.role)}};
 }
 

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 
 #include "app/text/calibration_text.hpp"
@@ -75,27 +74,12 @@ void add_channels(const Recording& recording, ExportedBank& exported) {
   exported.recorded_inputs.resize(static_cast<std::size_t>(bank.structure.inputs));
 }
 
-/// Same result as used_modes, for a filter whose use was not counted. The use is the share of windows, and the stay
-/// follows from T.
-std::vector<UsedMode> modes_by_windows(const Bank& bank) {
-  std::vector<UsedMode> modes;
-  for (Index k = 0; k < bank.mode_count(); ++k) {
-    const double leave = 1.0 - bank.transition.matrix()(k, k);
-    modes.push_back(
-        {k, bank.modes[static_cast<std::size_t>(k)].weight, leave > 0.0 ? bank.dt_s / leave : not_a_number, false});
-  }
-  std::stable_sort(modes.begin(), modes.end(), [](const UsedMode& a, const UsedMode& b) { return a.use > b.use; });
-  return modes;
-}
-
 void add_modes(const Archive& archive, ExportedBank& exported) {
   const Bank& bank = exported.bank;
   const bool learned = exported.filter == "bank";
   const std::vector<std::string> names = learned ? archive.mode_names : std::vector<std::string>();
-  const std::vector<UsedMode> modes = learned ? used_modes(archive) : modes_by_windows(bank);
-  exported.families =
-      mode_families(bank, names, modes,
-                    {unidentifiable_decays(archive, bank.structure), unidentifiable_gains(archive, bank.structure)});
+  const std::vector<UsedMode> modes = learned ? used_modes(archive) : used_modes(bank);
+  exported.motions = motions_of(bank, names, modes);
   exported.use.resize(learned ? modes.size() : 0);
   for (std::size_t j = 0; j < bank.modes.size(); ++j) {
     if (learned) exported.use[static_cast<std::size_t>(modes[j].mode)] = modes[j].use;

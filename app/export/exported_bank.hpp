@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "app/text/mode_families.hpp"
+#include "app/text/motions.hpp"
 #include "filter/step/bank.hpp"
 #include "io/archive/archive.hpp"
 #include "modebank/filter/options.hpp"
@@ -37,8 +37,7 @@ struct ExportedBank {
   double input_lag_s = 0.0;              ///< time by which the bank uses its inputs earlier than recorded
   std::vector<std::string> mode_names;   ///< K
   std::vector<double> use;               ///< K, mean probability of each mode on judged runs; empty for competitors
-  std::vector<ModeFamily> families;      ///< families of the modes, most used first; for competitors, ordered by their
-                                         ///< share of windows
+  std::vector<Motion> motions;           ///< most used first; for competitors, ordered by their share of windows
   std::vector<std::string> parameter_names, parameter_units;  ///< p, names and units of the entries of a mode's theta
   std::vector<ModeErrors> errors;                             ///< K
   std::vector<bool> unidentifiable;  ///< p, true if the training runs do not determine the parameter; may be empty

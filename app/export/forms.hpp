@@ -8,7 +8,7 @@
 namespace modebank::app {
 
 /// Version of the JSON form. New members increase the minor number; other changes increase the major number.
-inline constexpr const char* export_schema_version = "3.1";
+inline constexpr const char* export_schema_version = "4.0";
 
 std::string to_json(const ExportedBank& bank);
 

@@ -78,28 +78,19 @@ OrderedJson source_json(const ExportedBank& bank) {
           {"data_hash", bank.provenance.data_hash}};
 }
 
-/// The families of the modes: title, modes, use, stay, means of the time constant and of the gains.
-OrderedJson families_json(const ExportedBank& bank) {
+/// The motions: title, modes, use, stay, time constant and gains.
+OrderedJson motions_json(const ExportedBank& bank) {
   OrderedJson list = OrderedJson::array();
   const Unit units = ratios(units_of(bank.measurements), units_of(bank.recorded_inputs));
-  for (std::size_t f = 0; f < bank.families.size(); ++f) {
-    const ModeFamily& family = bank.families[f];
-    list.push_back({{"family", f}, {"title", family.title()}, {"modes", family.modes}});
-    list.back()["used"] = bank.use.empty() ? OrderedJson(nullptr) : OrderedJson(family.use);
-    list.back()["stay_s"] = family.stay_s;
-    list.back()["time_constant_s"] = {{"value", family.slowest.time_constant_s},
-                                      {"standard_error", family.slowest.time_constant_error_s}};
-    list.back()["gain"] = quantity(family.gain, family.gain_error, units);
+  for (const Motion& motion : bank.motions) {
+    list.push_back({{"motion", motion.number}, {"title", motion.title()}, {"modes", motion.modes}});
+    list.back()["used"] = bank.use.empty() ? OrderedJson(nullptr) : OrderedJson(motion.use);
+    list.back()["stay_s"] = motion.stay_s;
+    list.back()["time_constant_s"] = {{"value", motion.slowest.time_constant_s},
+                                      {"standard_error", motion.slowest.time_constant_error_s}};
+    list.back()["gain"] = quantity(motion.gain, motion.gain_error, units);
   }
   return list;
-}
-
-/// The index of a mode's family in the list of families.
-OrderedJson family_of(const ExportedBank& bank, Index mode) {
-  for (std::size_t f = 0; f < bank.families.size(); ++f)
-    for (const Index member : bank.families[f].modes)
-      if (member == mode) return f;
-  return nullptr;
 }
 
 Unit per_second(Unit units) {
@@ -140,7 +131,7 @@ OrderedJson mode_json(const ExportedBank& exported, Index k) {
   const Unit states = units_of(exported.states), inputs = units_of(exported.inputs);
   OrderedJson result = {{"index", k},
                         {"name", exported.mode_names[at]},
-                        {"family", family_of(exported, k)},
+                        {"motion", exported.bank.motion_of(k)},
                         {"share_of_windows", mode.weight}};
   result["A"] = quantity(exported.A(k), errors.A, ratios(states, states));
   result["B"] = quantity(mode.model.B, errors.B, ratios(states, inputs));
@@ -193,13 +184,6 @@ OrderedJson filter_json(const ExportedBank& exported) {
   const Bank& bank = exported.bank;
   OrderedJson result = {{"variant", name_of(exported.options.variant)}};
   result["quantum"] = bank.quantum.size() > 0 ? vector_json(bank.quantum) : OrderedJson(nullptr);
-  result["noise_factor"] = nullptr;
-  if (!bank.noise_factor.empty())
-    result["noise_factor"] = {{"directions", matrix_json(bank.noise_factor.directions)},
-                              {"weights", vector_json(bank.noise_factor.weights)},
-                              {"offset", bank.noise_factor.offset},
-                              {"softening", NoiseFactor::softening},
-                              {"largest", NoiseFactor::largest}};
   return result;
 }
 
@@ -228,7 +212,7 @@ std::string to_json(const ExportedBank& exported) {
   page["transition"] = transition_json(exported);
   page["gates"] = gates_json(bank.C.rows());
   page["filter"] = filter_json(exported);
-  page["families"] = families_json(exported);
+  page["motions"] = motions_json(exported);
   page["modes"] = OrderedJson::array();
   for (Index k = 0; k < bank.mode_count(); ++k) page["modes"].push_back(mode_json(exported, k));
   return page.dump(1, ' ', false, OrderedJson::error_handler_t::replace) + "\n";

@@ -109,10 +109,6 @@ std::string doubt_about_parameter(const ExportedBank& bank, Index mode, Index pa
 
 std::vector<std::string> ExportedBank::remarks() const {
   std::vector<std::string> list;
-  if (!bank.noise_factor.empty())
-    list.emplace_back(
-        "the filter multiplies every Q by a factor of 0.2 to 5 that depends on state and input; Q here is for factor "
-        "1");
   if (!bank.motion_parameters.empty())
     list.push_back(
         fmt::format("A, B and c linearise the motion model {} at each mode's mean state and input", bank.model));

@@ -23,39 +23,26 @@ std::string judged(const Finding& finding) {
   return finding.runs == 1 ? runs : fmt::format("{} {}", finding.runs, runs);
 }
 
-/// Text such as "`drifting`: one linear model whose parameters wander".
-std::string described(const std::string& competitor) {
-  return fmt::format("`{}`: {}", competitor, description_of(competitor));
-}
-
 std::string gain_words(double gain, double error) {
   const std::string plus_minus = std::isfinite(error) ? fmt::format(" +- {:.3f}", error) : " of unknown error";
   return fmt::format("{:+.3f}{} nats per sample", gain, plus_minus);
-}
-
-const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
-  const auto found = std::find_if(finding.gains.begin(), finding.gains.end(),
-                                  [&](const PairedGain& gain) { return gain.competitor == competitor; });
-  return found == finding.gains.end() ? nullptr : &*found;
-}
-
-bool falls_short_of(const Finding& finding, const std::string& competitor) {
-  const PairedGain* const gain = gain_over(finding, competitor);
-  return gain && gain->falls_short();
 }
 
 /// Sentence on the gain. Example:
 /// "switching between 5 linear models predicts the 6 held-out runs better than the best single model (`one_motion`: one
 /// linear model with changing noise): each sample is 14.4 % more likely (+0.134 +- 0.040 nats per sample)."
 std::string gain_sentence(const Finding& finding, const char* start) {
-  if (finding.best_competitor.empty()) return "";
-  const char* const than = falls_short_of(finding, finding.best_competitor) ? "worse than"
-                           : finding.gain < negligible_gain                 ? "no better than"
-                                                                            : "better than";
-  return fmt::format("{}witching between {} predicts the {} {} the best single model ({}): each sample is {} ({}).",
-                     start, counted(finding.modes, "linear model"), judged(finding), than,
-                     described(finding.best_competitor), likelihood_words(finding.gain),
-                     gain_words(finding.gain, finding.standard_error));
+  const PairedGain* const best = gain_over(finding, finding.best_competitor);
+  if (!best) return "";
+  const char* const than = best->falls_short()     ? "worse than"
+                           : best->is_negligible() ? "no better than"
+                                                   : "better than";
+  const bool motions = finding.motions > 1 && finding.motions < finding.modes;
+  return fmt::format(
+      "{}witching between {} predicts the {} {} the best single model (`{}`: {}): each sample is {} ({}).", start,
+      motions ? counted(finding.motions, "motion") : counted(finding.modes, "linear model"), judged(finding), than,
+      best->competitor, description_of(best->competitor), likelihood_words(finding.gain),
+      gain_words(finding.gain, finding.standard_error));
 }
 
 std::string gain_words(const PairedGain& gain) {
@@ -88,12 +75,13 @@ std::string why_not_told(const Finding& finding) {
                            return !std::isfinite(gain.margin);
                          })->competitor);
     case Doubt::small_gain:
-      return fmt::format("{} is less than the {:g} that counts", gain_words(*least_beaten(finding)), negligible_gain);
+      return fmt::format("{} is less than the {:.2g} that counts", gain_words(*least_beaten(finding)),
+                         least_beaten(finding)->least_gain);
     case Doubt::short_stays:
       return fmt::format(
-          "modes last {:.3g} samples on average ({:.0f} or more passes), and noisy inputs or a delay that differs "
+          "{} last {:.3g} samples on average ({:.0f} or more passes), and noisy inputs or a delay that differs "
           "between runs look like shorter ones",
-          finding.stay, finding.stay_asked);
+          finding.motions < finding.modes ? "motions" : "modes", finding.stay, finding.stay_asked);
     case Doubt::within_chance:
       break;
   }
@@ -127,7 +115,10 @@ std::string without_noise_words(const Finding& finding) {
 
 std::string one_mode_words(const Finding& finding) {
   if (finding.without_noise) return without_noise_words(finding);
-  std::string text = "The bank has one mode: no modes of motion.";
+  const char* const one = finding.modes < 2          ? "mode"
+                          : std::isnan(finding.stay) ? "motion, whose noise changes"
+                                                     : "motion that lasts five samples or more";
+  const std::string text = fmt::format("The bank has one {}: no modes of motion.", one);
   if (finding.repeating.empty()) return text;
   return text + fmt::format(" Its log scores measure rounding rather than motion: {}.", repeating_words(finding));
 }

@@ -54,16 +54,15 @@ std::string modes_section(const Archive& archive, const FirstScreen& screen, int
     return section(
         "modes",
         fmt::format("{} in the bank, which is not shown to predict better than `{}`; `modebank show` has them",
-                    screen.mode_count, simpler),
+                    motion_words(*archive.bank), simpler),
         2, columns);
   const std::string indent(2, ' ');
   ShortModes modes = short_modes(archive, lines - 2, columns - static_cast<int>(indent.size()), unit);
   std::string& table = modes.text;
   boost::algorithm::trim_right(table);
   boost::replace_all(table, "\n", "\n" + indent);
-  const Index families = screen.modes.families;
-  std::string head = fmt::format("{}", screen.mode_count);
-  if (families < screen.mode_count) head += fmt::format(" in {} famil{}", families, families == 1 ? "y" : "ies");
+  std::string head = motion_words(*archive.bank);
+  if (head == counted_words(*archive.bank)) head = std::to_string(screen.mode_count);  // the label says "modes"
   head += fmt::format(" on {} {}", words_for(screen.role),
                       noun_of_runs(2, archive.recording && are_stretches(*archive.recording)));
   const bool units = !screen.modes.gain_unit.empty();

@@ -10,11 +10,12 @@
 #include "app/text/number_text.hpp"
 #include "app/text/terminal.hpp"
 #include "app/text/text_table.hpp"
+#include "filter/step/motions.hpp"
 
 namespace modebank::app {
 namespace {
 
-constexpr std::size_t most_members = 4;  // largest number of a family's modes in one cell of a table
+constexpr std::size_t most_members = 4;  // largest number of a motion's modes in one cell of a table
 
 std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::MatrixXd& error,
                                     const std::vector<bool>& unidentifiable) {
@@ -27,37 +28,34 @@ std::vector<std::string> gain_cells(const Eigen::MatrixXd& gain, const Eigen::Ma
   return cells;
 }
 
-bool some_have_several(const std::vector<ModeFamily>& families) {
-  return std::any_of(families.begin(), families.end(),
-                     [](const ModeFamily& family) { return family.modes.size() > 1; });
-}
+bool some_have_several(const Bank& bank) { return motion_count(bank) < bank.mode_count(); }
 
-/// Name of a family in a table. If some family has several modes: "ice (0, 5, 3)" or "modes 2, 7". Otherwise: "4 grip"
+/// Name of a motion in a table. If some motion has several modes: "ice (0, 5, 3)" or "modes 2, 7". Otherwise: "4 grip"
 /// or "2".
-std::string family_cell(const ModeFamily& family, bool several) {
-  const std::string name = shortened(family.name);
-  if (!several) return name.empty() ? family.numbers() : fmt::format("{} {}", family.numbers(), name);
-  if (!name.empty()) return fmt::format("{} ({})", name, family.numbers(most_members));
-  return fmt::format("{} {}", family.modes.size() == 1 ? "mode" : "modes", family.numbers(most_members));
+std::string motion_cell(const Motion& motion, bool several) {
+  const std::string name = shortened(motion.name);
+  if (!several) return name.empty() ? motion.numbers() : fmt::format("{} {}", motion.numbers(), name);
+  if (!name.empty()) return fmt::format("{} ({})", name, motion.numbers(most_members));
+  return fmt::format("{} {}", motion.modes.size() == 1 ? "mode" : "modes", motion.numbers(most_members));
 }
 
-std::vector<std::string> family_headings(const GainNames& gains, bool several) {
-  std::vector<std::string> headings{several ? "family (modes)" : "mode", "used", "stay", "time constant"};
+std::vector<std::string> motion_headings(const GainNames& gains, bool several) {
+  std::vector<std::string> headings{several ? "motion (modes)" : "mode", "used", "stay", "time constant"};
   headings.insert(headings.end(), gains.names.begin(), gains.names.end());
   return headings;
 }
 
-std::vector<ModeTable::Row> family_rows(const Archive& archive, const std::vector<ModeFamily>& families, bool several,
+std::vector<ModeTable::Row> motion_rows(const Archive& archive, const std::vector<Motion>& motions, bool several,
                                         const std::string& unit) {
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, archive.bank->structure);
   const bool no_decays = unidentifiable_decays(archive, archive.bank->structure);
   std::vector<ModeTable::Row> rows;
-  for (const ModeFamily& family : families) {
-    const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
-    ModeTable::Row row{family.modes,
-                       {family_cell(family, several), fmt::format("{:.1f} %", 100 * family.use), stay_words(stay, unit),
-                        no_decays ? not_identifiable : time_words(family, unit)}};
-    const std::vector<std::string> gains = gain_cells(family.gain, family.gain_error, unidentifiable);
+  for (const Motion& motion : motions) {
+    const UsedMode stay{motion.modes.front(), motion.use, motion.stay_s, motion.at_least};
+    ModeTable::Row row{motion.modes,
+                       {motion_cell(motion, several), fmt::format("{:.1f} %", 100 * motion.use), stay_words(stay, unit),
+                        no_decays ? not_identifiable : decay_words(motion.slowest, "+-", unit)}};
+    const std::vector<std::string> gains = gain_cells(motion.gain, motion.gain_error, unidentifiable);
     row.cells.insert(row.cells.end(), gains.begin(), gains.end());
     rows.push_back(std::move(row));
   }
@@ -108,56 +106,37 @@ std::string all_modes(const Archive& archive, const GainNames& gains, int width,
   return text_of(headings, rows, !archive.mode_names.empty(), width);
 }
 
-/// A table of the families, with the modes of each family and the modes that enter its means. Empty unless some family
-/// has several modes.
-std::string all_families(const Archive& archive, const GainNames& gains, int width, const std::string& unit) {
-  const std::vector<ModeFamily> families = mode_families(archive);
-  if (!some_have_several(families)) return "";
-  std::string text =
-      "\nfamilies of modes: means over the modes, weighted by use. The errors include the modes' own errors and the "
-      "differences between the modes\n";
-  text = wrapped(text, width) +
-         text_of(family_headings(gains, true), family_rows(archive, families, true, unit), true, width);
-  for (const ModeFamily& family : families) {
-    if (family.modes.size() == 1) continue;
-    std::string line = family.title();
-    if (family.counted.size() < family.modes.size())
-      line += fmt::format(": numbers of {} of them, the others are vague or do not settle", family.counted.size());
-    text += wrapped(line + "\n", width);
-  }
+/// A table of the motions. Empty unless some motion has several modes.
+std::string all_motions(const Archive& archive, const GainNames& gains, int width, const std::string& unit) {
+  if (!some_have_several(*archive.bank)) return "";
+  const std::vector<Motion> motions = motions_of(archive);
+  std::string text = wrapped("\nmotions: modes with the same parameters, which differ in noise\n", width) +
+                     text_of(motion_headings(gains, true), motion_rows(archive, motions, true, unit), true, width);
+  for (const Motion& motion : motions)
+    if (motion.modes.size() > most_members) text += wrapped(motion.title() + "\n", width);
   return text;
 }
 
 }  // namespace
 
-std::string time_words(const ModeFamily& family, const std::string& unit, const char* plus_minus) {
-  Decay slowest = family.slowest;
-  slowest.frequency_hz = 0.0;
-  const bool mean = family.counted.size() > 1 && std::isfinite(slowest.time_constant_s);
-  return mean ? estimate_text(slowest.time_constant_s, slowest.time_constant_error_s, plus_minus) + " " + unit
-              : decay_words(slowest, plus_minus, unit);
-}
-
 ModeTable mode_table(const Archive& archive, Index rows, const std::string& unit) {
-  std::vector<ModeFamily> families = mode_families(archive);
-  const bool several = some_have_several(families);
-  const auto all = static_cast<Index>(families.size());
-  std::vector<double> use;
-  for (const ModeFamily& family : families) use.push_back(family.use);
-  const Index told = told_of(use);
+  std::vector<Motion> motions = motions_of(archive);
+  const bool several = some_have_several(*archive.bank);
+  const auto all = static_cast<Index>(motions.size());
+  const Index told = told_of(motions);
   const bool fit = rows == 0 || (told == all ? all : told + 1) <= rows;
   const Index shown = fit ? told : std::clamp<Index>(rows - 1, 1, told);
   const GainNames gains = gains_of(archive);
-  ModeTable table{family_headings(gains, several), {}, all, all - shown, 0.0, gains.unit};
-  for (Index i = shown; i < all; ++i) table.others_use += use[static_cast<std::size_t>(i)];
-  families.resize(static_cast<std::size_t>(shown));
-  table.rows = family_rows(archive, families, several, unit);
+  ModeTable table{motion_headings(gains, several), {}, all - shown, 0.0, gains.unit};
+  for (Index i = shown; i < all; ++i) table.others_use += motions[static_cast<std::size_t>(i)].use;
+  motions.resize(static_cast<std::size_t>(shown));
+  table.rows = motion_rows(archive, motions, several, unit);
   return table;
 }
 
 ShortModes short_modes(const Archive& archive, Index rows, int width, const std::string& unit) {
   ModeTable table = mode_table(archive, rows, unit);
-  const bool left = !archive.mode_names.empty() || table.families < archive.bank->mode_count();
+  const bool left = !archive.mode_names.empty() || some_have_several(*archive.bank);
   ShortModes result{text_of(table.headings, table.rows, left, 0), 0};
   const std::size_t without_gains = table.headings.size() - gains_of(archive).names.size();
   while (widest_line(result.text) > width && table.headings.size() > without_gains) {
@@ -176,7 +155,7 @@ std::string modes_in_words(const Archive& archive, int width, const std::string&
   if (!archive.bank) return "";
   const GainNames gains = gains_of(archive);
   return fmt::format("\nmodes in words{}\n", gains.unit.empty() ? "" : fmt::format("; gains in {}", gains.unit)) +
-         all_modes(archive, gains, width, unit) + all_families(archive, gains, width, unit);
+         all_modes(archive, gains, width, unit) + all_motions(archive, gains, width, unit);
 }
 
 }  // namespace modebank::app

@@ -15,9 +15,7 @@
 namespace modebank::app {
 namespace {
 
-constexpr Index most_modes = 8;
-constexpr double least_use = 0.01;  // a short table lists families with less use among the "others"
-constexpr int longest_name = 16;    // largest width of a name in a table
+constexpr int longest_name = 16;  // largest width of a name in a table
 constexpr double standard_errors_95 = 1.96;
 
 /// Lower end of the 95 % interval of tau. It is used if the interval of the rate 1 / tau reaches zero, so that the mode
@@ -65,7 +63,7 @@ std::string decay_words(const Decay& decay, const char* plus_minus, const std::s
   const double time = decay.time_constant_s, least = least_time_constant(decay);
   std::string text = std::isinf(time) ? "integrates"
                      : least > 0.0    ? fmt::format("over {:.2g} {}", least, unit)
-                     : time < 0.0     ? fmt::format("unstable: grows e-fold in {:.3g} {}", -time, unit)
+                     : time < 0.0     ? "unstable, held by the loop"
                      : time == 0.0    ? "at once"
                                       : estimate_text(time, decay.time_constant_error_s, plus_minus) + " " + unit;
   if (decay.frequency_hz > 0.0) text += fmt::format(", period {:.3g} {}", 1.0 / decay.frequency_hz, unit);
@@ -82,17 +80,29 @@ namespace {
 
 /// The stay is computed from the transition matrix. For state-dependent transition probabilities, it is computed from
 /// the sequence of most probable modes.
-UsedMode with_stay(const Archive& archive, Index mode, double use, const DiagnosticsRow* row) {
-  const Bank& bank = *archive.bank;
-  const double leave = 1.0 - bank.transition.matrix()(mode, mode);
-  double samples = bank.mode_count() > 1 && leave > 0.0 ? 1.0 / leave : not_a_number;
-  if (row) samples = row->dwell_model > 0.0 && row->dwell > 0.0 ? row->dwell_model : row->dwell;
+UsedMode judged_mode(const Archive& archive, const DiagnosticsRow& row) {
+  double samples = row.dwell_model > 0.0 && row.dwell > 0.0 ? row.dwell_model : row.dwell;
   Index longest = 0;
   for (std::size_t i = 0; archive.recording && i < archive.recording->runs.size(); ++i)
     longest = std::max(longest, archive.recording->runs[i].samples());
-  const bool at_least = longest > 0 && row && row->dwell_model > 0.0 && samples > static_cast<double>(longest);
+  const bool at_least = longest > 0 && row.dwell_model > 0.0 && samples > static_cast<double>(longest);
   if (at_least) samples = static_cast<double>(longest);
-  return {mode, use, samples > 0.0 ? samples * bank.dt_s : not_a_number, at_least};
+  return {row.mode, row.usage, samples > 0.0 ? samples * archive.bank->dt_s : not_a_number, at_least};
+}
+
+std::vector<UsedMode> unjudged_modes(const Bank& bank) {
+  std::vector<UsedMode> modes;
+  for (Index k = 0; k < bank.mode_count(); ++k) {
+    const double leave = 1.0 - bank.transition.matrix()(k, k);
+    modes.push_back(
+        {k, bank.modes[static_cast<std::size_t>(k)].weight, leave > 0.0 ? bank.dt_s / leave : not_a_number, false});
+  }
+  return modes;
+}
+
+std::vector<UsedMode> by_use(std::vector<UsedMode> modes) {
+  std::stable_sort(modes.begin(), modes.end(), [](const UsedMode& a, const UsedMode& b) { return a.use > b.use; });
+  return modes;
 }
 
 }  // namespace
@@ -101,17 +111,15 @@ std::string stay_words(const UsedMode& mode, const std::string& unit) {
   return std::isnan(mode.stay_s) ? "-" : fmt::format("{}{:.3g} {}", mode.at_least ? "over " : "", mode.stay_s, unit);
 }
 
+std::vector<UsedMode> used_modes(const Bank& bank) { return by_use(unjudged_modes(bank)); }
+
 std::vector<UsedMode> used_modes(const Archive& archive) {
-  const Bank& bank = *archive.bank;
-  std::vector<UsedMode> modes;
-  for (Index k = 0; k < bank.mode_count(); ++k)
-    modes.push_back(with_stay(archive, k, bank.modes[static_cast<std::size_t>(k)].weight, nullptr));
+  std::vector<UsedMode> modes = unjudged_modes(*archive.bank);
   const Role role = judged_role(archive);
   for (const DiagnosticsRow& row : archive.diagnostics)
-    if (row.filter == "bank" && row.role == role && row.mode >= 0 && row.mode < bank.mode_count())
-      modes[static_cast<std::size_t>(row.mode)] = with_stay(archive, row.mode, row.usage, &row);
-  std::stable_sort(modes.begin(), modes.end(), [](const UsedMode& a, const UsedMode& b) { return a.use > b.use; });
-  return modes;
+    if (row.filter == "bank" && row.role == role && row.mode >= 0 && row.mode < archive.bank->mode_count())
+      modes[static_cast<std::size_t>(row.mode)] = judged_mode(archive, row);
+  return by_use(std::move(modes));
 }
 
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs) {
@@ -132,11 +140,6 @@ GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const
   for (std::size_t i = 0; i < units.size() && !shared; ++i)
     if (!units[i].empty() && units[i] != "1") gains.names[i] += " [" + units[i] + "]";
   return gains;
-}
-
-Index told_of(const std::vector<double>& use) {
-  const Index worth = std::count_if(use.begin(), use.end(), [](double share) { return share >= least_use; });
-  return std::min(most_modes, std::max<Index>(1, worth));
 }
 
 }  // namespace modebank::app

@@ -10,7 +10,7 @@
 /// app/text/summary_tables.hpp prints the parameters of the modes.
 namespace modebank::app {
 
-/// Text such as "0.163 +- 0.004 s", "integrates" or "unstable: grows e-fold in 2 s". If, within the standard error, the
+/// Text such as "0.163 +- 0.004 s", "integrates" or "unstable, held by the loop". If, within the standard error, the
 /// mode may never die out, the text is "over 3 s". For a mode that oscillates, it ends in ", period 0.5 s".
 /// `unit`: that of times.
 std::string decay_words(const Decay& decay, const char* plus_minus = "+-", const std::string& unit = "s");
@@ -28,8 +28,10 @@ struct UsedMode {
 };
 /// Text such as "6.61 s" or "over 60 s"; "-" if the mode was never entered.
 std::string stay_words(const UsedMode& mode, const std::string& unit = "s");
-/// The modes of the bank, the most used first. If no run was scored, the use is the mode's weight.
+/// The modes of the bank, the most used first. If no run was scored, as for a bank without scores.
 std::vector<UsedMode> used_modes(const Archive& archive);
+/// Without scores the use is the mode's weight, and the stay follows from T.
+std::vector<UsedMode> used_modes(const Bank& bank);
 
 /// Text for a parameter that the training runs do not determine. Example: an input is always zero, or one input is a
 /// sum of others.
@@ -52,10 +54,5 @@ struct GainNames {
   std::string unit;  ///< unit of all gains; empty if the gains have no unit or different units
 };
 GainNames gain_names(const Bank& bank, const std::vector<Channel>& states, const std::vector<Channel>& inputs);
-
-/// Number of modes or families that get their own row in a table. These are the most used ones: at most eight, each
-/// with a use of at least 1 %, but at least one. All others share the row "others". `use`: the use of each, in
-/// decreasing order.
-Index told_of(const std::vector<double>& use);
 
 }  // namespace modebank::app

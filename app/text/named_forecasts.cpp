@@ -9,6 +9,7 @@
 #include <set>
 
 #include "app/text/judged_runs.hpp"
+#include "app/text/motions.hpp"
 #include "filter/judge/finding.hpp"
 
 namespace modebank::app {
@@ -102,7 +103,7 @@ NamedForecast named(const Archive& archive, const std::vector<Reached>& all, con
 
 std::string understanding(const Archive& archive) {
   const Finding& finding = *archive.finding;
-  if (finding.answer == Answer::evidence) return fmt::format("the {} modes", archive.bank->mode_count());
+  if (finding.answer == Answer::evidence) return "the " + counted_words(*archive.bank);
   if (!finding.better_description.empty()) return fmt::format("`{}`", finding.better_description);
   return archive.bank->mode_count() == 1 ? "the one mode" : "the modes, with care";
 }
@@ -114,8 +115,6 @@ std::string steps_words(Index steps) { return fmt::format("{} step{} ahead", ste
 std::string c_lacks(const Bank& bank) {
   if (!bank.running_noise.empty()) return "coefficients that learn in every run";
   if (!bank.terms.empty()) return "a motion that bends (window.terms)";
-  if (!bank.noise_factor.empty())
-    return "process noise that follows state and input (a bank with a given bank.measurement_variance has none)";
   return bank.is_quantised() ? "measurements in steps (data.quantum)" : "";
 }
 

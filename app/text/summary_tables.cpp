@@ -207,9 +207,7 @@ std::string modes_text(const Archive& archive, bool full_form, int width) {
     cells.push_back(fmt::format("{:.4g}", fmt::join(mode.Q.diagonal().cwiseSqrt().eval(), " ")));
     table.add(std::move(cells));
   }
-  const char* const noise =
-      bank.noise_factor.empty() ? "" : "noise: every Q has a factor that depends on states and inputs\n";
-  return table.text(width) + noise + motion_parameters_text(bank, names, width) + switches_text(bank, names, width);
+  return table.text(width) + motion_parameters_text(bank, names, width) + switches_text(bank, names, width);
 }
 
 }  // namespace modebank::app

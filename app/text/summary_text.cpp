@@ -9,7 +9,7 @@
 #include "app/text/confusion_text.hpp"
 #include "app/text/judged_runs.hpp"
 #include "app/text/lag_text.hpp"
-#include "app/text/mode_words.hpp"
+#include "app/text/motions.hpp"
 #include "app/text/response_text.hpp"
 #include "app/text/structure_text.hpp"
 #include "app/text/summary_tables.hpp"
@@ -57,7 +57,7 @@ std::string mixture_text(const Archive& archive) {
 }
 
 std::string bank_text(const Bank& bank) {
-  std::string text = fmt::format("bank      {} modes", bank.mode_count());
+  std::string text = "bank      " + motion_words(bank);
   for (const ScreenedMode& mode : bank.screened)
     text += fmt::format("; component {} screened: {}", mode.component, mode.reason);
   text += fmt::format("; R = {:.4g}", fmt::join(bank.R.diagonal(), " "));
@@ -169,6 +169,7 @@ std::string summary_text(const Archive& archive, const std::string& unit, int wi
     WindowCounts counts;
     counts.add(*archive.windows);
     text += windows_text(*archive.windows, counts, window_labels(archive));
+    if (const std::string noise = sensor_noise_words(archive); !noise.empty()) text += "          " + noise + "\n";
   }
   if (archive.mixture) text += mixture_text(archive);
   if (archive.bank) {

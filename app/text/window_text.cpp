@@ -12,6 +12,17 @@
 
 namespace modebank::app {
 
+std::string sensor_noise_words(const Archive& archive) {
+  constexpr double harmless = 0.1;  // largest share of R in Q
+  if (!archive.windows || !archive.bank) return "";
+  const Bank& bank = *archive.bank;
+  const Eigen::MatrixXd& Q = bank.modes[static_cast<std::size_t>(used_modes(archive).front().mode)].Q;
+  const Eigen::VectorXd noise = (bank.C * Q * bank.C.transpose()).diagonal();
+  if ((bank.R.diagonal().array() <= harmless * noise.array()).all()) return "";
+  return std::string("the windows' parameters are biased by sensor noise; the bank's are ") +
+         (archive.mixture_makes_bank() ? "their means" : "not");
+}
+
 std::vector<std::string> window_labels(const Archive& archive) {
   if (!archive.windows) return {};
   const Recording none;

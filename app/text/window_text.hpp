@@ -12,6 +12,9 @@ namespace modebank::app {
 /// The summary's lines on windows: their number and status, and the global model. `labels`: parameters.
 std::string windows_text(const WindowFits& common, const WindowCounts& counts, const std::vector<std::string>& labels);
 
+/// What sensor noise does to the parameters of windows, where R exceeds a tenth of the most used mode's Q. Else empty.
+std::string sensor_noise_words(const Archive& archive);
+
 /// The parameter_labels of the archive's windows; empty if it has no windows.
 std::vector<std::string> window_labels(const Archive& archive);
 /// The names of the features. Parameters have their labels. Works for one-lag fits, too.

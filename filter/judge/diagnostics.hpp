@@ -71,15 +71,15 @@ struct DiagnosticsRow {
   double coverage_99 = 0.0, coverage_99_lower = 0.0, coverage_99_upper = 0.0;
   double too_far = 0.0, too_far_lower = 0.0, too_far_upper = 0.0;        ///< share of z^2 above its 97.5 % quantile
   double too_close = 0.0, too_close_lower = 0.0, too_close_upper = 0.0;  ///< share of z^2 below its 2.5 % quantile
-  double nis_mean = 0.0;         ///< SquaredDistances::mean of the NIS; n_y is expected for a correct model
-  double nees_mean = 0.0;        ///< NEES of the states after the measurement that have noise, if the truth is known
-  Eigen::VectorXd state_rmse;    ///< n_y, RMSE of the state against the true state; NaN if the true state is unknown
-  double whiteness_p = 0.0;      ///< p value of Ljung & Box's test, as in the summary
-  double autocorrelation = 0.0;  ///< largest autocorrelation of z by absolute value; 0 for a mode
+  double nis_mean = 0.0;            ///< SquaredDistances::mean of the NIS; n_y is expected for a correct model
+  double nees_mean = 0.0;           ///< NEES of the states after the measurement that have noise, if the truth is known
+  Eigen::VectorXd state_rmse = {};  ///< n_y, RMSE of the state against the true state; NaN if the true state is unknown
+  double whiteness_p = 0.0;         ///< p value of Ljung & Box's test, as in the summary
+  double autocorrelation = 0.0;     ///< largest autocorrelation of z by absolute value; 0 for a mode
   Eigen::Index autocorrelation_lag = 0;
   Calibration verdict = Calibration::undecided;
   CalibrationReason reason = CalibrationReason::few_samples;  ///< what decided the verdict
-  std::string flags;                                          ///< remarkable facts, separated by "; "
+  std::string flags = {};                                     ///< remarkable facts, separated by "; "
 };
 
 /// Rows of one filter on the runs of a role, which alone need an evaluation: the whole filter, then each mode if there

@@ -7,6 +7,7 @@
 
 #include "filter/judge/statistics.hpp"
 #include "filter/step/combined_filter.hpp"
+#include "filter/step/motions.hpp"
 #include "ident/base/clustered_error.hpp"
 #include "ident/base/distributions.hpp"
 
@@ -104,10 +105,6 @@ const Named* named(const std::vector<Named>& all, std::string Named::*name, cons
   return found == all.end() ? nullptr : &*found;
 }
 
-const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
-  return named(finding.gains, &PairedGain::competitor, competitor);
-}
-
 /// The competitor with the highest score is that over which the bank gains least.
 void set_best_competitor(Finding& finding) {
   finding.gain = finding.standard_error = not_a_number;
@@ -121,50 +118,45 @@ void set_best_competitor(Finding& finding) {
 
 /// Whether the gain of `better` over another description is negligible or insignificant.
 bool is_as_good(const PairedGain& of_better) {
-  if (of_better.gain < negligible_gain) return true;
+  if (of_better.is_negligible()) return true;
   return std::isfinite(of_better.margin) && !of_better.exceeds() && !of_better.ranks_tell();
 }
 
 /// Finds the simplest competitor that is as good as the best competitor and as the bank.
-void set_better_description(const std::vector<Densities>& competitors, Finding& finding) {
-  const Densities* leader = named(competitors, &Densities::filter, finding.best_competitor);
+void set_better_description(const FindingInputs& in, Finding& finding) {
+  const Densities* leader = named(in.competitors, &Densities::filter, finding.best_competitor);
   for (const char* name : competitor_names) {
-    const Densities* candidate = named(competitors, &Densities::filter, name);
+    const Densities* candidate = named(in.competitors, &Densities::filter, name);
     if (leader && candidate && is_as_good(*gain_over(finding, name)) &&
-        is_as_good(paired_gain(name, leader->of_runs, candidate->of_runs)))
+        is_as_good(paired_gain(name, leader->of_runs, candidate->of_runs, in.response_samples)))
       finding.better_description = name;
     // the remaining competitors are less simple
     if (!finding.better_description.empty() || finding.best_competitor == name) return;
   }
 }
 
-/// The answer by scores, if lags and time steps allow an answer.
-Answer answer_by_scores(const Finding& finding) {
-  if (finding.modes < 2 || finding.without_noise) return Answer::one_mode;
-  if (!finding.repeating.empty()) return Answer::not_comparable;
-  if (finding.gains.empty() || !finding.held_out()) return Answer::cannot_tell;
-  for (const PairedGain& gain : finding.gains)
-    if (gain.gain + gain.margin < negligible_gain) return Answer::no_evidence;
-  const PairedGain* least = least_beaten(finding);
-  return least && least->counts() && !(finding.stay < finding.stay_asked) ? Answer::evidence : Answer::cannot_tell;
-}
-
-/// The answer. While lags are missing, gains over competitors do not prove modes.
 Answer answer_of(const Finding& finding) {
+  const bool short_stays = finding.stay < finding.stay_asked;
   if (finding.step_scatter > most_step_scatter) return Answer::not_yet;
-  const Answer answer = answer_by_scores(finding);
-  const bool by_gains = finding.held_out() && answer != Answer::one_mode && answer != Answer::not_comparable;
-  return by_gains && finding.pattern.told() ? Answer::not_yet : answer;
+  if (finding.without_noise || (finding.motions < 2 && !short_stays)) return Answer::one_mode;
+  if (!finding.repeating.empty()) return Answer::not_comparable;
+  if (!finding.held_out()) return Answer::cannot_tell;
+  if (finding.pattern.told()) return Answer::not_yet;  // while lags are missing, gains do not prove modes
+  if (finding.gains.empty()) return Answer::cannot_tell;
+  for (const PairedGain& gain : finding.gains)
+    if (gain.gain + gain.margin < gain.least_gain) return Answer::no_evidence;
+  const PairedGain* least = least_beaten(finding);
+  return least && least->counts() && !short_stays ? Answer::evidence : Answer::cannot_tell;
 }
 
-/// Mean stay of the bank in a mode: 1 / (rate of leaving it); from the most probable sequence of modes if that rate
-/// depends on the state.
+/// Mean stay of the bank in a motion: 1 / (rate of leaving it); from the most probable sequence of modes if that rate
+/// depends on the state and no modes share a motion.
 double stay_of(const FindingInputs& in) {
-  const bool by_sequence = !in.bank.transition_logit.empty();
+  const bool by_sequence = !in.bank.transition_logit.empty() && motion_count(in.bank) == in.bank.mode_count();
   double used = 0.0, left = 0.0;
   for (const DiagnosticsRow& row : in.diagnostics) {
     if (row.filter != "bank" || row.role != in.role || row.mode < 0) continue;
-    const double stay = by_sequence ? row.dwell : row.dwell_model;
+    const double stay = by_sequence ? row.dwell : stay_in_motion(in.bank, in.bank.motion_of(row.mode));
     used += row.usage;
     left += stay > 0.0 ? row.usage / stay : 0.0;
   }
@@ -222,7 +214,7 @@ std::vector<BetterMean> better_means(const FindingInputs& in) {
 }  // namespace
 
 PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
-                       const std::vector<Eigen::VectorXd>& other) {
+                       const std::vector<Eigen::VectorXd>& other, double response_samples) {
   constexpr std::size_t fewest_runs = 5;
   constexpr double fewest_blocks = 8.0, times_per_block = 2.0, upper_probability = 0.975;
   const SeriesByRun d = differences(better, other);
@@ -230,6 +222,7 @@ PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::V
   result.by_blocks = d.size() < fewest_runs;
   result.standard_error = result.margin = not_a_number;
   if (!std::isfinite(result.gain)) return result;
+  result.least_gain = least_nats(sample_count(d), response_samples) / sample_count(d);
   const double block = times_per_block * cautious_time(autocorrelation_time(d), sample_count(d));
   const std::size_t length = result.by_blocks ? static_cast<std::size_t>(std::ceil(block)) : 0;
   const Clusters clusters(d, length);
@@ -251,20 +244,23 @@ const char* description_of(const std::string& competitor) {
   return "";
 }
 
+const PairedGain* gain_over(const Finding& finding, const std::string& competitor) {
+  return named(finding.gains, &PairedGain::competitor, competitor);
+}
+
 Doubt doubt_of(const Finding& finding) {
   if (!finding.held_out()) return Doubt::nothing_held_out;
   if (finding.gains.empty()) return Doubt::no_competitor;
   if (!least_beaten(finding)) return Doubt::few_samples;
   const PairedGain& least = *least_beaten(finding);
   if (!least.told()) return Doubt::within_chance;
-  return least.gain < negligible_gain ? Doubt::small_gain : Doubt::short_stays;
+  return least.is_negligible() ? Doubt::small_gain : Doubt::short_stays;
 }
 
 const PairedGain* least_beaten(const Finding& finding) {
   const auto comes_before = [](const PairedGain& a, const PairedGain& b) {
     if (a.told() != b.told()) return b.told();
-    const bool a_counts = a.gain >= negligible_gain, b_counts = b.gain >= negligible_gain;
-    return a_counts != b_counts ? b_counts : a.gain * b.margin < b.gain * a.margin;
+    return a.is_negligible() != b.is_negligible() ? a.is_negligible() : a.gain * b.margin < b.gain * a.margin;
   };
   const PairedGain* least = nullptr;
   for (const PairedGain& gain : finding.gains) {
@@ -280,6 +276,7 @@ Finding judge_modes(const FindingInputs& in) {
   finding.runs = std::count_if(in.bank_densities.of_runs.begin(), in.bank_densities.of_runs.end(),
                                [](const Eigen::VectorXd& run) { return (!run.array().isNaN()).any(); });
   finding.modes = in.bank.mode_count();
+  finding.motions = counted_motions(in.bank);
   finding.step_scatter = in.step_scatter;
   finding.pattern = in.pattern;
   finding.stay = stay_of(in);
@@ -288,13 +285,14 @@ Finding judge_modes(const FindingInputs& in) {
   std::copy_if(in.states.begin(), in.states.end(), std::back_inserter(finding.repeating),
                [](const Resolution& state) { return state.repeated > repeated_share; });
   for (const Densities& competitor : in.competitors)
-    finding.gains.push_back(paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs));
+    finding.gains.push_back(
+        paired_gain(competitor.filter, in.bank_densities.of_runs, competitor.of_runs, in.response_samples));
   set_best_competitor(finding);
   finding.answer = answer_of(finding);
   const bool densities_tell =
       finding.answer != Answer::not_comparable && finding.answer != Answer::not_yet && !finding.without_noise;
   const PairedGain* over_best = gain_over(finding, finding.best_competitor);
-  if (densities_tell && !(over_best && over_best->counts())) set_better_description(in.competitors, finding);
+  if (densities_tell && !(over_best && over_best->counts())) set_better_description(in, finding);
   finding.description = description_of(finding);
   if (finding.modes > 1 && !finding.without_noise) finding.better_means = better_means(in);
   return finding;

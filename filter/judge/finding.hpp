@@ -17,7 +17,7 @@
 /// Decides whether held-out runs require modes of motion (method: section 6). All output uses this result.
 namespace modebank {
 
-/// Loss below which a description counts as equally good [nats per sample], as in the choice of modes (rule.hpp).
+/// Loss below which a forecast counts as equally good [nats per sample].
 inline constexpr double negligible_gain = 0.02;
 
 /// Gain of one filter over another on the same samples.
@@ -27,16 +27,18 @@ struct PairedGain {
   double gain = 0.0;            ///< mean difference of log density [nats/sample]; NaN without samples
   double standard_error = 0.0;  ///< standard error of the gain; NaN if unknown
   double degrees_of_freedom = 0.0;
-  double margin = 0.0;     ///< smallest significant gain, t(0.975, degrees of freedom) standard errors; NaN if unknown
-  bool by_blocks = false;  ///< whether clusters are blocks of samples instead of runs
-  double rank_p = 1.0;     ///< Wilcoxon's signed ranks of the mean differences per run, or per block of samples
+  double margin = 0.0;      ///< smallest significant gain, t(0.975, degrees of freedom) standard errors; NaN if unknown
+  bool by_blocks = false;   ///< whether clusters are blocks of samples instead of runs
+  double rank_p = 1.0;      ///< Wilcoxon's signed ranks of the mean differences per run, or per block of samples
+  double least_gain = 0.0;  ///< smallest gain that counts, least_nats / samples; not archived
 
   /// False if the standard error is unknown.
   bool exceeds() const { return gain > margin; }
   bool ranks_tell() const { return rank_p < 0.05; }
   /// Significant by the paired t-test (one-sided, 2.5 %) and, as one odd run can distort it, by signed ranks (5 %).
   bool told() const { return exceeds() && ranks_tell(); }
-  bool counts() const { return told() && gain >= negligible_gain; }
+  bool is_negligible() const { return gain < least_gain; }
+  bool counts() const { return told() && !is_negligible(); }
   bool falls_short() const { return gain < -margin; }
 };
 
@@ -47,8 +49,9 @@ struct PairedGain {
 /// Statistics 17), at least two autocorrelation times of the differences long. S_i is the sum over block i, B the
 /// number of blocks that fit side by side; with fewer than eight the error is unknown (NaN):
 ///   SE^2 = B / (B - 1) mean_i (S_i - b m)^2 / (b N),   df = B - 1.
+/// `response_samples`: of one linear model (step/motions.hpp).
 PairedGain paired_gain(const std::string& competitor, const std::vector<Eigen::VectorXd>& better,
-                       const std::vector<Eigen::VectorXd>& other);
+                       const std::vector<Eigen::VectorXd>& other, double response_samples = 1.0);
 
 /// not_yet: step_scatter or pattern must be settled first. not_comparable: measurements are repeated too often.
 enum class Answer { one_mode, not_comparable, cannot_tell, no_evidence, evidence, not_yet };
@@ -116,9 +119,10 @@ struct Finding {
   Eigen::Index runs = 0;              ///< number of judged runs with scored samples
   bool stretches = false;             ///< whether the runs are stretches of one drive; filled in by the output
   Eigen::Index modes = 0;             ///< number of modes of the bank
+  Eigen::Index motions = 0;           ///< number of motions that count (counted_motions); not archived
   double step_scatter = 0.0;          ///< standard deviation of the time steps, divided by their median
   ErrorPattern pattern;               ///< pattern in the errors of the bank
-  double stay = not_a_number;         ///< mean stay in a mode (harmonic mean) [samples]; NaN if unknown
+  double stay = not_a_number;         ///< mean stay in a motion (harmonic mean) [samples]; NaN if unknown or endless
   double stay_asked = 0.0;            ///< smallest stay for evidence [samples]
   std::vector<Resolution> repeating;  ///< states for which densities are not comparable
   bool without_noise = false;         ///< whether one linear model explains the runs up to rounding
@@ -136,6 +140,8 @@ struct Finding {
   bool held_out() const { return role == Role::test; }
 };
 
+/// The gain over a competitor; null without its scores.
+const PairedGain* gain_over(const Finding& finding, const std::string& competitor);
 /// The first reason for the answer `cannot tell`.
 Doubt doubt_of(const Finding& finding);
 /// The gain that is least significant (gain divided by its margin); an insignificant one comes first. Null if a margin
@@ -154,18 +160,20 @@ struct FindingInputs {
   double step_scatter = 0.0;  ///< as in Finding
   std::vector<DiagnosticsRow> diagnostics = {};
   ErrorPattern pattern = {};
+  double response_samples = 1.0;  ///< 63 % response time of `baseline` (step/motions.hpp)
 };
 
 /// Decides whether the runs require modes.
 /// - not yet: the steps scatter beyond most_step_scatter, or further lags would remove a pattern in the errors.
-/// - one mode: the bank has one mode, or one linear model leaves no noise (scores are then scores of rounding).
-/// - evidence: the gain over each competitor is significant and not negligible, and stays last at least five samples
+/// - one mode: one motion counts (counted_motions), and stays are long enough to say so; or one linear model leaves no
+///   noise (scores are then scores of rounding).
+/// - evidence: the gain over each competitor is significant and not negligible, and motions last at least five samples
 ///   and the memory of the model. Shorter stays appear with noisy inputs or a delay that differs between runs, which
 ///   competitors do not model. Modes that differ in noise alone gain nothing over `one_motion`, which has their noises.
 /// - no evidence: the gain over a competitor is known to be negligible, since even its upper limit is.
 /// - cannot tell: all other cases, such as no held-out runs, or too few samples for a margin.
 /// Without a gain that counts over the best competitor, better_description is the simplest one as good as the best and
-/// the bank: it loses less than 0.02 nats, or neither a t-test nor Wilcoxon's test over runs separates the two.
+/// the bank: it loses less than counts as a gain, or neither a t-test nor Wilcoxon's test over runs separates the two.
 Finding judge_modes(const FindingInputs& in);
 
 }  // namespace modebank

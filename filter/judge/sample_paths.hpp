@@ -73,7 +73,6 @@ class SamplePaths {
     for (const Gaussian<Eigen::Dynamic>& mode : state.modes) start_root.push_back(covariance_root(mode.covariance));
     states_.resize(bank_.structure.dimension(), paths_);
     modes_.resize(paths_);
-    noise_factor_.setOnes(paths_);
     for (Index i = 0; i < paths_; ++i) {
       modes_[i] = draw_mode(state.mode_probability);
       states_.col(i) = state.modes[modes_[i]].mean;
@@ -94,7 +93,6 @@ class SamplePaths {
     modes_.resize(finite.size());
     states_ = states_(Eigen::all, finite).eval();
     predicted_ = predicted_(Eigen::all, finite).eval();
-    noise_factor_ = noise_factor_(finite).eval();
   }
 
   /// Draws the measurements of a sample.
@@ -128,10 +126,9 @@ class SamplePaths {
       Eigen::MatrixXd centred = predicted(Eigen::all, in_mode);
       const Eigen::VectorXd mean = centred.rowwise().mean();
       centred.colwise() -= mean;
-      const Eigen::MatrixXd Q = noise_factor_(in_mode).mean() * bank_.modes[j].Q;
       Eigen::VectorXd residual = y - mean;
       factor.factorise(centred * centred.transpose() / static_cast<double>(in_mode.size()) +
-                       bank_.C * Q * bank_.C.transpose() + R_);
+                       bank_.C * bank_.modes[j].Q * bank_.C.transpose() + R_);
       factor.decorrelate(residual);
       log_likelihood(j) = 0.0;
       for (Index i = 0; i < y.size(); ++i)
@@ -152,7 +149,6 @@ class SamplePaths {
   std::vector<Eigen::MatrixXd> noise_root_;  ///< K
   Eigen::MatrixXd states_, predicted_;       ///< n x count; `predicted_` lacks the last step's noise
   Eigen::MatrixXd sorted_;                   ///< count x n_y, measurements of the present sample
-  Eigen::VectorXd noise_factor_;             ///< noise factor of every path in the last step
   std::vector<Index> modes_;                 ///< mode of every path in the last step
   Eigen::VectorXd share_, regressor_, normal_;
   TransitionWorkspace transition_;
@@ -160,12 +156,12 @@ class SamplePaths {
 
   Index count() const { return states_.cols(); }  ///< remaining paths
 
-  /// Adds a draw from N(0, scale^2 root root').
-  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to, double scale = 1.0) {
+  /// Adds a draw from N(0, root root').
+  void add_draw(const Eigen::MatrixXd& root, Eigen::Ref<Eigen::VectorXd> to) {
     boost::random::normal_distribution<double> standard;
     normal_.resize(root.cols());
     for (double& value : normal_) value = standard(generator_);
-    to.noalias() += scale * (root * normal_);
+    to.noalias() += root * normal_;
   }
 
   Index draw_mode(const Vector& probability) {
@@ -176,7 +172,7 @@ class SamplePaths {
     return mode;
   }
 
-  /// Transitions and noise factor are those of the path's own state.
+  /// Transition probabilities are those of the path's own state.
   void step_path(Index path, const Vector& inputs) {
     const Eigen::VectorXd state = states_.col(path);
     Index& drawn = modes_[path];
@@ -191,9 +187,8 @@ class SamplePaths {
       terms_.evaluate(bank_.terms, regressor_);
       next.head(bank_.structure.states) += mode.bend * terms_.value();
     }
-    if (!bank_.noise_factor.empty()) noise_factor_(path) = bank_.noise_factor.at(state, inputs);
     states_.col(path) = next;
-    add_draw(noise_root_[drawn], states_.col(path), std::sqrt(noise_factor_(path)));
+    add_draw(noise_root_[drawn], states_.col(path));
   }
 };
 

@@ -16,9 +16,8 @@ namespace {
 double divisor(Index samples) { return samples > 0 ? static_cast<double>(samples) : not_a_number; }
 
 /// A sample is scored by its available signals.
-SummaryRow summary_of(const std::vector<std::size_t>& runs, const std::vector<RunEvaluation>& evaluations,
-                      const std::vector<RunScores>& scores) {
-  SummaryRow row;
+SummaryRow summary_of(SummaryRow row, const std::vector<std::size_t>& runs,
+                      const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
   const Index n_y = evaluations.at(runs.front()).innovation.rows();
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(n_y), errors = squares;
   std::vector<Interval> region{{0.0, 0.0}};  // of the NIS of 0 to n_y signals
@@ -62,9 +61,8 @@ SummaryRow summary_of(const std::vector<std::size_t>& runs, const std::vector<Ru
   return row;
 }
 
-FreeRunRow free_run_row(const std::vector<std::size_t>& runs, const std::vector<Trajectory>& all,
+FreeRunRow free_run_row(FreeRunRow row, const std::vector<std::size_t>& runs, const std::vector<Trajectory>& all,
                         const std::vector<FreeRun>& predicted) {
-  FreeRunRow row;
   const Index n_y = all[runs.front()].state.rows();
   Eigen::ArrayXd squares = Eigen::ArrayXd::Zero(n_y), sum = squares, square_sum = squares, origin;
   Eigen::ArrayXXd inside = Eigen::ArrayXXd::Zero(n_y, std::ssize(coverage_levels));
@@ -100,12 +98,8 @@ FreeRunRow free_run_row(const std::vector<std::size_t>& runs, const std::vector<
 std::vector<SummaryRow> summarize(const std::string& filter, Role role, const std::vector<Trajectory>& runs,
                                   const std::vector<RunEvaluation>& evaluations, const std::vector<RunScores>& scores) {
   std::vector<SummaryRow> rows;
-  for (const RunGroup& group : run_groups(runs, role)) {
-    rows.push_back(summary_of(group.runs, evaluations, scores));
-    rows.back().filter = filter;
-    rows.back().role = role;
-    rows.back().run = group.name;
-  }
+  for (const RunGroup& group : run_groups(runs, role))
+    rows.push_back(summary_of({filter, role, group.name}, group.runs, evaluations, scores));
   return rows;
 }
 
@@ -157,13 +151,8 @@ std::vector<FreeRunRow> summarize_free_runs(const std::string& filter, const std
                                             const std::vector<FreeRun>& free_runs, const FreeRunOptions& options) {
   std::vector<FreeRunRow> rows;
   for (const Role role : {Role::train, Role::test})
-    for (const RunGroup& group : run_groups(runs, role)) {
-      rows.push_back(free_run_row(group.runs, runs, free_runs));
-      rows.back().filter = filter;
-      rows.back().role = role;
-      rows.back().run = group.name;
-      rows.back().start = options.samples;
-    }
+    for (const RunGroup& group : run_groups(runs, role))
+      rows.push_back(free_run_row({filter, role, group.name, options.samples}, group.runs, runs, free_runs));
   return rows;
 }
 

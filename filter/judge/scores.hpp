@@ -18,15 +18,15 @@ namespace modebank {
 struct SummaryRow {
   std::string filter;  ///< bank or a competitor
   Role role = Role::train;
-  std::string run;           ///< "*": all runs of the role pooled
-  Eigen::Index samples = 0;  ///< scored samples
-  double log_score = 0.0;    ///< mean log predictive density [nats/sample], higher is better
-  Eigen::VectorXd rmse;      ///< n_y, RMSE of the one-step prediction [state unit]
-  double nis_mean = 0.0;     ///< sum of NIS divided by the number of scored signals, times n_y; a correct model has n_y
-  double nis_above = 0.0;    ///< share of NIS above the 97.5 % quantile of chi-square for the sample's signals
-  double nis_below = 0.0;    ///< share of NIS below the 2.5 % quantile
-  double too_far = 0.0;      ///< share of z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
-  double too_close = 0.0;    ///< share of z^2 below the 2.5 % quantile
+  std::string run;            ///< "*": all runs of the role pooled
+  Eigen::Index samples = 0;   ///< scored samples
+  double log_score = 0.0;     ///< mean log predictive density [nats/sample], higher is better
+  Eigen::VectorXd rmse = {};  ///< n_y, RMSE of the one-step prediction [state unit]
+  double nis_mean = 0.0;   ///< sum of NIS divided by the number of scored signals, times n_y; a correct model has n_y
+  double nis_above = 0.0;  ///< share of NIS above the 97.5 % quantile of chi-square for the sample's signals
+  double nis_below = 0.0;  ///< share of NIS below the 2.5 % quantile
+  double too_far = 0.0;    ///< share of z^2 above the 97.5 % quantile of chi-square(1), z = Phi^-1(pit)
+  double too_close = 0.0;  ///< share of z^2 below the 2.5 % quantile
   double coverage_50 = 0.0, coverage_90 = 0.0, coverage_95 = 0.0, coverage_99 = 0.0;  ///< shares of |z| inside a band
   double pit_distance = 0.0;  ///< Kolmogorov distance of pit from the uniform distribution
   double whiteness_p = 0.0;   ///< whiteness_p of the runs, pooled by Fisher's method
@@ -71,13 +71,13 @@ struct FreeRunRow {
   std::string filter;
   Role role = Role::train;
   std::string run;
-  Eigen::Index start = 0;    ///< number of measured samples at the beginning
-  Eigen::Index samples = 0;  ///< scored samples
-  double log_score = 0.0;    ///< mean log predictive density [nats/sample]
-  Eigen::VectorXd rmse;      ///< n_y [state unit]
-  Eigen::VectorXd nrmse;     ///< n_y, RMSE divided by the standard deviation of the measurements (divisor N)
-  Eigen::VectorXd fit;       ///< n_y [%], 100 (1 - ||y - mean|| / ||y - average of y||)
-  Eigen::VectorXd coverage_50, coverage_90, coverage_95, coverage_99;  ///< n_y, shares inside the central bands
+  Eigen::Index start = 0;      ///< number of measured samples at the beginning
+  Eigen::Index samples = 0;    ///< scored samples
+  double log_score = 0.0;      ///< mean log predictive density [nats/sample]
+  Eigen::VectorXd rmse = {};   ///< n_y [state unit]
+  Eigen::VectorXd nrmse = {};  ///< n_y, RMSE divided by the standard deviation of the measurements (divisor N)
+  Eigen::VectorXd fit = {};    ///< n_y [%], 100 (1 - ||y - mean|| / ||y - average of y||)
+  Eigen::VectorXd coverage_50 = {}, coverage_90 = {}, coverage_95 = {}, coverage_99 = {};  ///< n_y, as in SummaryRow
   Eigen::Index lost_paths = 0;
 };
 

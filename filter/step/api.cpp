@@ -49,9 +49,6 @@ void each_part_of_bank(Description& d, Numbers& bank, Visit visit) {
   visit(d.input_delay, bank.structure.input_delay);
   visit(d.intercept, bank.structure.intercept);
   visit(d.centre, bank.structure.centre);
-  visit(d.noise_by_state.directions, bank.noise_factor.directions);
-  visit(d.noise_by_state.weights, bank.noise_factor.weights);
-  visit(d.noise_by_state.offset, bank.noise_factor.offset);
   visit(d.drift.scale, bank.drift.scale);
   visit(d.drift.rate, bank.drift.rates.q);
   visit(d.drift.start, bank.drift.rates.p0);

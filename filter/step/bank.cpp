@@ -154,10 +154,6 @@ const Bank& validate(const Bank& bank) {
   require(bank.transition_logit.weights.allFinite() && bank.transition_logit.reference.allFinite(),
           "weights of the transition are not finite");
   check_terms(bank.terms, s.regressors());
-  if (const auto& [directions, weights, offset] = bank.noise_factor; directions.size() + weights.size() > 0) {
-    expect_size("directions of the noise factor", directions, weights.size(), s.dimension() + s.acting_inputs());
-    require(directions.allFinite() && weights.allFinite() && std::isfinite(offset), "noise factor is not finite");
-  }
   check_drift(bank);
   check_running_noise(bank);
   return bank;

@@ -74,35 +74,6 @@ const Eigen::MatrixXd& transition_at(const Eigen::MatrixXd& T, const TransitionL
   return at.T;
 }
 
-/// filter::NoiseByState, one factor for all modes. Its limits, 0.2 to 5, keep a forecast usable if inputs differ from
-/// those of the training runs: without them, a factor learned on DART lost 54 nats per sample on other runs.
-struct NoiseFactor {
-  Eigen::MatrixXd directions;  ///< d x (n + m), directions_i [z; v] has a root mean square of 1 on the training runs
-  Eigen::VectorXd weights;     ///< d
-  double offset = 0.0;         ///< with this offset, log f has mean zero on the training runs
-
-  static constexpr double softening = 0.1, largest = 5.0;
-
-  bool empty() const { return weights.size() == 0; }
-
-  /// log f. NaN if an entry of z or v is not finite. Does not allocate.
-  template <class Z, class V>
-  double log_at(const Z& z, const V& v) const {
-    double sum = -offset;
-    for (Eigen::Index i = 0; i < weights.size(); ++i) {
-      double along = 0.0;
-      for (Eigen::Index j = 0; j < z.size(); ++j) along += directions(i, j) * z(j);
-      for (Eigen::Index j = 0; j < v.size(); ++j) along += directions(i, z.size() + j) * v(j);
-      sum += weights(i) * std::log(std::abs(along) + softening);
-    }
-    return std::clamp(sum, -std::log(largest), std::log(largest));
-  }
-  template <class Z, class V>
-  double at(const Z& z, const V& v) const {
-    return std::exp(log_at(z, v));
-  }
-};
-
 /// filter::Mode, with what is known about its numbers.
 struct Mode {
   LinearModel model;                     ///< A (n x n), B (n x m), c (n)
@@ -174,9 +145,13 @@ struct RunningNoise {
 struct Bank {
   std::string model = "linear";  ///< `linear`, `varx`, or the name of a motion model
   LinearStructure structure;
-  std::vector<Mode> modes;  ///< K >= 1
-  Eigen::MatrixXd C;        ///< n_y x n
-  Eigen::MatrixXd R;        ///< n_y x n_y
+  std::vector<Mode> modes;                ///< K >= 1
+  std::vector<Eigen::Index> motion = {};  ///< K, modes of one motion share theta; empty: each mode is one of its own
+  /// While a bank is learned: above 1, every motion has so many modes in a row whose Q differ by factors, one per
+  /// level, and T is the Kronecker product of a chain of motions and one of levels.
+  Eigen::Index noise_levels = 1;
+  Eigen::MatrixXd C;  ///< n_y x n
+  Eigen::MatrixXd R;  ///< n_y x n_y
   /// n_y, spacing q of measured values [state unit]; 0 or empty: continuous. The filter's R is then at least q^2 / 12,
   /// and the score of a value is the mass of its interval.
   Eigen::VectorXd quantum = {};
@@ -189,13 +164,12 @@ struct Bank {
   std::vector<ModelParameter> motion_parameters;  ///< parameters of a motion model; empty for linear models
   BankDrift drift;                                ///< drift of a single mode with running noise; empty: none
   MotionTerms terms = {};                         ///< nonlinear terms, the same for all modes
-  NoiseFactor noise_factor = {};                  ///< factor on every Q that depends on state and input
   RunningNoise running_noise = {};                ///< noise of a single mode that drifts; empty: the noise is Q
   Eigen::MatrixXd R_standard_error;               ///< n_y x n_y; empty unless R was estimated with the bank
   Eigen::MatrixXd transition_standard_error;      ///< K x K, standard errors of T; only for refined banks, else empty
-  Eigen::MatrixXd transition_weight_error;        ///< K x d standard errors of the logit's weights; empty if unknown
 
   Eigen::Index mode_count() const { return static_cast<Eigen::Index>(modes.size()); }
+  Eigen::Index motion_of(Eigen::Index mode) const { return motion.empty() ? mode : motion[mode]; }
   bool is_quantised() const { return (quantum.array() > 0.0).any(); }
   /// n_y, variance of the rounding error, q^2 / 12: it is uniform within the quantum. 0 for continuous signals.
   Eigen::VectorXd rounding_variance() const;

@@ -165,11 +165,8 @@ class ImmFilter {
   /// Predicts the next sample, one model step later, under the acting inputs `v`.
   void predict(const Vector& v) {
     mix(v);
-    double noise_factor = 1.0;  // evaluated at the combined estimate, like a logit
-    const NoiseFactor& factor = model_->bank.noise_factor;
-    if (!factor.empty()) noise_factor = factor.at(combined_mean(), v);
     for (std::size_t j = 0; j < kalman_.size(); ++j) {
-      kalman_[j].predict(mixed_[j], *model_, model_->modes[j], v, noise_factor);
+      kalman_[j].predict(mixed_[j], *model_, model_->modes[j], v);
       kalman_[j].expect(model_->sensor);
     }
   }

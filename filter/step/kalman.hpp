@@ -81,9 +81,9 @@ struct FilterModel {
     if (variant == FilterVariant::kf && bank.mode_count() != 1)
       throw std::invalid_argument("a Kalman filter (kf) needs a bank of one mode; this one has " +
                                   std::to_string(bank.mode_count()));
-    if (variant == FilterVariant::salvi2025 && !(bank.transition_logit.empty() && bank.noise_factor.empty()))
+    if (variant == FilterVariant::salvi2025 && !bank.transition_logit.empty())
       throw std::invalid_argument(
-          "the paper's equations (salvi2025) do not support switching or noise by state and input; use imm");
+          "the paper's equations (salvi2025) do not support switching by state and input; use imm");
     for (const modebank::Mode& mode : bank.modes)
       modes.push_back({mode.model.A, mode.model.full_form(), mode.model.B, mode.model.c, mode.Q, mode.bend});
     const Eigen::Index n = structure.dimension();
@@ -138,16 +138,16 @@ struct KalmanStep {
         NY_(n, n_y),
         phi_(regressors) {}
 
-  /// x = x + A x + B u + c, P = F P F' + noise_factor Q. Terms g are added to x, and F includes their slope at the
-  /// mean: an extended Kalman filter, which is exact for P = 0.
+  /// x = x + A x + B u + c, P = F P F' + Q. Terms g are added to x, and F includes their slope at the mean: an extended
+  /// Kalman filter, which is exact for P = 0.
   template <class U>
   void predict(const Gaussian<N>& from, const FilterModel<N, NY>& model, const typename FilterModel<N, NY>::Mode& mode,
-               const U& u, double noise_factor) {
+               const U& u) {
     propagate(mode.A.topRows(model.full_rows), mode.B, mode.c, from.mean, u, predicted.mean);
     for (Eigen::Index i = model.full_rows; i < predicted.mean.size(); ++i)
       predicted.mean(i) = from.mean(i - model.full_rows);
     const Square& F = model.bank.terms.empty() ? mode.F : bend(model, mode, from.mean, u);
-    predicted.covariance = noise_factor * mode.Q;
+    predicted.covariance = mode.Q;
     known_before_ = from.known;
     if (!from.known) add_propagated(F, from.covariance, all_or(model.full_rows));
     make_usable(predicted);

@@ -224,7 +224,7 @@ double BankGradient::along(const Bank& from, const Bank& to) const {
 
 bool has_likelihood_gradient(const Bank& bank, const FilterOptions& options) {
   return (options.variant == FilterVariant::imm || (options.variant == FilterVariant::kf && bank.mode_count() == 1)) &&
-         bank.transition_logit.empty() && bank.terms.empty() && bank.noise_factor.empty();
+         bank.transition_logit.empty() && bank.terms.empty();
 }
 
 BankGradient log_likelihood_gradient(const Bank& bank, const Trajectory& run, const FilterOptions& options) {

@@ -1,7 +1,5 @@
 #include "ident/base/linalg.hpp"
 
-#include <Spectra/GenEigsSolver.h>
-
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 #include <Eigen/SVD>
@@ -81,47 +79,6 @@ VectorXd symmetric_eigenvalues(const MatrixXd& M) {
 }
 
 Eigen::VectorXcd eigenvalues(const MatrixXd& square) { return square.eigenvalues(); }
-
-namespace {
-
-using Product = std::function<VectorXd(const VectorXd&)>;
-
-/// Wraps a linear map in the interface that Spectra requires.
-class MapOfProducts {
- public:
-  using Scalar = double;
-  MapOfProducts(const Product& product, Eigen::Index size) : product_(product), size_(size) {}
-  Eigen::Index rows() const { return size_; }
-  Eigen::Index cols() const { return size_; }
-  void perform_op(const double* x, double* y) const {
-    Eigen::Map<VectorXd>(y, size_) = product_(Eigen::Map<const VectorXd>(x, size_));
-  }
-
- private:
-  const Product& product_;
-  Eigen::Index size_;
-};
-
-double dense_largest_real(const Product& product, Eigen::Index size) {
-  MatrixXd matrix(size, size);
-  for (Eigen::Index i = 0; i < size; ++i) matrix.col(i) = product(VectorXd::Unit(size, i));
-  return matrix.eigenvalues().real().maxCoeff();
-}
-
-}  // namespace
-
-double largest_real_eigenvalue(const Product& product, const VectorXd& start) {
-  constexpr Eigen::Index most_dense = 64, krylov = 30, restarts = 300;
-  constexpr double tolerance = 1e-11;
-  const Eigen::Index size = start.size();
-  if (size <= most_dense) return dense_largest_real(product, size);
-  MapOfProducts map(product, size);
-  Spectra::GenEigsSolver<MapOfProducts> arnoldi(map, 1, krylov);
-  arnoldi.init(start.data());
-  arnoldi.compute(Spectra::SortRule::LargestReal, restarts, tolerance);
-  if (arnoldi.info() != Spectra::CompInfo::Successful) return dense_largest_real(product, size);
-  return arnoldi.eigenvalues()(0).real();
-}
 
 void Cholesky::factorise(const MatrixXd& M) { factor_.compute(M); }
 

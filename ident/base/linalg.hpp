@@ -3,7 +3,6 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <Eigen/LU>
-#include <functional>
 #include <optional>
 
 /// Dense matrix decompositions by Eigen. Eigen's templates for decompositions are slow to compile, so this file
@@ -47,11 +46,6 @@ Eigen::VectorXd symmetric_eigenvalues(const Eigen::MatrixXd& M);
 
 /// Eigenvalues of any square matrix, unordered.
 Eigen::VectorXcd eigenvalues(const Eigen::MatrixXd& square);
-/// The largest real part of the eigenvalues of a linear map on R^n. The map is given by its products M x. `start` (n)
-/// is a guess of the eigenvector. Uses restarted Arnoldi iteration (Spectra) to a relative tolerance of 1e-11. A dense
-/// decomposition is used for small maps, and if the iteration does not converge.
-double largest_real_eigenvalue(const std::function<Eigen::VectorXd(const Eigen::VectorXd&)>& product,
-                               const Eigen::VectorXd& start);
 
 /// Cholesky factor of a symmetric positive definite matrix, M = L L'.
 class Cholesky {

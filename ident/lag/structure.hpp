@@ -89,6 +89,7 @@ struct FoundStructure {
   std::ptrdiff_t structures = 0;            ///< number of structures compared
   std::ptrdiff_t noise_lags = 0;            ///< of the single linear model; 0 for an ARX
   bool differences = false;                 ///< whether that model is one of differences
+  bool noisy_sensor = false;                ///< whether the search found more sensor noise than a tenth of Q
   std::string remark = {};                  ///< reason why the search did not use its full range; empty if it did
   std::vector<StructureScore> scores = {};  ///< scores of the finalists, in decreasing order
 

@@ -201,8 +201,8 @@ void exchange_diagnostics(Io& io, R& rows, const Unit& states) {
 /// - without_noise: 1: the errors of one linear model are only rounding errors
 /// - gain: gain of the bank over `best_competitor` [nat] per sample
 /// - description: `several modes`, `one linear motion`, `one drifting motion`, `one nonlinear motion`, `none`
-/// - stay: harmonic mean length of a visit to a mode [samples]
-/// - stay_asked: shortest mean visit that counts as a mode [samples]
+/// - stay: harmonic mean length of a visit to a motion [samples]
+/// - stay_asked: shortest mean visit that counts as a motion [samples]
 /// - terms_asked: 1: terms of one nonlinear motion were compared
 /// - pattern_gain: gain of predicting the bank's errors from past errors and inputs [nat] per sample on training
 ///   runs; NaN: not computed

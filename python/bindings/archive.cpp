@@ -7,7 +7,7 @@
 
 #include "app/config/config_file.hpp"
 #include "app/text/first_screen.hpp"
-#include "app/text/mode_families.hpp"
+#include "app/text/motions.hpp"
 #include "app/text/summary_text.hpp"
 #include "modebank/base/eigen.hpp"
 #include "python/bindings/arrays.hpp"
@@ -31,25 +31,25 @@ std::string summary(const std::string& path, int width) {
   return app::summary_text(archive, app::time_unit(app::resolved_values(archive.config)), width);
 }
 
-/// One dictionary for each family of modes. The most used family comes first.
-py::list families(const std::string& path) {
-  std::vector<app::ModeFamily> all;
+/// One dictionary for each motion, the most used first.
+py::list motions(const std::string& path) {
+  std::vector<app::Motion> all;
   {
     const py::gil_scoped_release unlocked;
     const Archive archive = read_archive(path, Evaluations::in_file);
-    if (archive.bank) all = app::mode_families(archive);
+    if (archive.bank) all = app::motions_of(archive);
   }
   py::list list;
-  for (const app::ModeFamily& family : all) {
+  for (const app::Motion& motion : all) {
     py::dict said;
-    said["title"] = family.title();
-    said["modes"] = family.modes;
-    said["use"] = family.use;
-    said["stay_s"] = family.stay_s;
-    said["time_constant_s"] = family.slowest.time_constant_s;
-    said["time_constant_error_s"] = family.slowest.time_constant_error_s;
-    said["gain"] = copied(to_matrix(family.gain));
-    said["gain_error"] = copied(to_matrix(family.gain_error));
+    said["title"] = motion.title();
+    said["modes"] = motion.modes;
+    said["use"] = motion.use;
+    said["stay_s"] = motion.stay_s;
+    said["time_constant_s"] = motion.slowest.time_constant_s;
+    said["time_constant_error_s"] = motion.slowest.time_constant_error_s;
+    said["gain"] = copied(to_matrix(motion.gain));
+    said["gain_error"] = copied(to_matrix(motion.gain_error));
     list.append(said);
   }
   return list;
@@ -65,8 +65,8 @@ void bind_archive(py::module_& module) {
         return OpenArchive(path).digest();
       },
       py::arg("path"), "SHA-256 of an archive after a check; throws DataError for a file that is not an archive.");
-  module.def("families", &families, py::arg("path"),
-             "Families of the modes of an archive's bank, most used first: one dictionary per family.");
+  module.def("motions", &motions, py::arg("path"),
+             "Motions of an archive's bank, most used first: one dictionary per motion.");
   module.def("screen", &screen);
   module.def("summary", &summary);
 }

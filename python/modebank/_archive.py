@@ -175,10 +175,10 @@ class Archive:
         return len(self["/bank/weight"])
 
     @property
-    def families(self) -> list[dict]:
-        """Families of modes, the most used first: title, modes, use, stay_s, time_constant_s and gain (n_y, inputs), both with an
-        error. Modes of one name, or near in time constant and gain, are one family; its numbers are means by use."""
-        return _modebank.families(self.path)
+    def motions(self) -> list[dict]:
+        """Motions, the most used first: title, modes, use, stay_s, time_constant_s and gain (n_y, inputs), both with an error.
+        Modes of one motion have the same parameters and differ in noise."""
+        return _modebank.motions(self.path)
 
     @property
     def A(self) -> Array:

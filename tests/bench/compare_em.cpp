@@ -58,7 +58,7 @@ EmCase make_case(const std::string& name, Index points, Index features, Index co
   const double share = std::pow(static_cast<double>(components), -2.0 / static_cast<double>(features));
   for (Index k = 0; k < components; ++k) {
     result.start.means.col(k) = result.points.col(static_cast<Index>(generator() % static_cast<std::uint64_t>(points)));
-    result.start.covariances[static_cast<std::size_t>(k)] = (share * variance.array() + 0.05).matrix().asDiagonal();
+    result.start.covariances[k] = (share * variance.array() + 0.05).matrix().asDiagonal();
   }
   return result;
 }
@@ -175,8 +175,7 @@ EmRun sweep(const EmCase& problem, int threads, int most, int restarts, int seed
       tbb::blocked_range<int>(0, most, 1),
       [&](const tbb::blocked_range<int>& range) {
         for (int i = range.begin(); i < range.end(); ++i)
-          log_likelihoods[static_cast<std::size_t>(i)] =
-              points.fit(most - i, static_cast<std::uint64_t>(seed)).log_likelihood;
+          log_likelihoods[i] = points.fit(most - i, static_cast<std::uint64_t>(seed)).log_likelihood;
       },
       tbb::simple_partitioner());
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;

@@ -99,21 +99,21 @@ double plain(const Bank& bank, const Trajectory& run) {
     const VectorXd c = T.transpose() * mu;
     for (Index j = 0; j < K; ++j) {
       VectorXd x = VectorXd::Zero(n);
-      for (Index i = 0; i < K; ++i) x += f[static_cast<std::size_t>(i)].x * (T(i, j) * mu(i) / c(j));
+      for (Index i = 0; i < K; ++i) x += f[i].x * (T(i, j) * mu(i) / c(j));
       MatrixXd P = MatrixXd::Zero(n, n);
       for (Index i = 0; i < K; ++i) {
-        const VectorXd y = f[static_cast<std::size_t>(i)].x - x;
-        P += (T(i, j) * mu(i) / c(j)) * (f[static_cast<std::size_t>(i)].P + y * y.transpose());
+        const VectorXd y = f[i].x - x;
+        P += (T(i, j) * mu(i) / c(j)) * (f[i].P + y * y.transpose());
       }
-      xs[static_cast<std::size_t>(j)] = x;
-      Ps[static_cast<std::size_t>(j)] = P;
+      xs[j] = x;
+      Ps[j] = P;
     }
     const VectorXd u = run.input.col(k - 1), z = run.state.col(k);
     double sum = 0.0;
     for (Index j = 0; j < K; ++j) {
-      PlainFilter& filter = f[static_cast<std::size_t>(j)];
-      filter.x = xs[static_cast<std::size_t>(j)];
-      filter.P = Ps[static_cast<std::size_t>(j)];
+      PlainFilter& filter = f[j];
+      filter.x = xs[j];
+      filter.P = Ps[j];
       filter.predict(u);
       filter.update(z);
       mu(j) = c(j) * filter.likelihood;

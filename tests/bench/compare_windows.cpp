@@ -168,8 +168,8 @@ void check_against(const std::vector<PeerFit>& peers, const Trajectory& run, con
   const Index windows = static_cast<Index>(peers.size());
   run_batch(run, solver, windows, [&](Index first, Index count, const JobResults& results) {
     for (Index i = 0; i < count; ++i) {
-      solved += results.verdict[static_cast<std::size_t>(i)] == batch::Verdict::solved ? 1 : 0;
-      const Eigen::Map<const Eigen::Vector3d> peer(peers[static_cast<std::size_t>(first + i)].theta);
+      solved += results.verdict[i] == batch::Verdict::solved ? 1 : 0;
+      const Eigen::Map<const Eigen::Vector3d> peer(peers[first + i].theta);
       near += (results.theta.col(i) - peer).cwiseAbs().maxCoeff() < 1e-5 ? 1 : 0;
     }
   });
@@ -198,9 +198,7 @@ void compare(const Trajectory& run, const PeerData& data, Loss loss, int rounds)
   check_against(naive_fits, run, same_problem);
   Index near = 0;
   for (Index i = 0; i < naive; ++i)
-    near += (general_theta.col(i) - Eigen::Map<const Eigen::Vector3d>(naive_fits[static_cast<std::size_t>(i)].theta))
-                        .cwiseAbs()
-                        .maxCoeff() < 1e-5
+    near += (general_theta.col(i) - Eigen::Map<const Eigen::Vector3d>(naive_fits[i].theta)).cwiseAbs().maxCoeff() < 1e-5
                 ? 1
                 : 0;
   check(near > naive * 98 / 100, fmt::format("motion model: {} of {} windows near Ceres' optimum", near, naive));

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Processor time of `modebank run` as a function of states, lags and samples: the table of docs/results/speed.md.
 
-measure_cost.py MODEBANK FOLDER [--only NAME] [--seconds N]
+measure_cost.py MODEBANK FOLDER [--only NAME,NAME] [--seconds N]
 
 Systems:
 - n = m = 1, 2, 4, 6, 8 states and inputs, and two states with 2, 4, 8 lags: 4 runs of 400 samples, every other one held out
@@ -12,15 +12,15 @@ All systems switch between two motions. Settings are the defaults, on one thread
 the program prints; on one thread it equals processor time. A run that takes longer than N seconds (1200) is stopped.
 """
 
-import argparse
 import os
 import platform
 import re
 import resource
 import subprocess
-from pathlib import Path
 
 import numpy as np
+
+from switching_system import options_of, switched, write_runs
 
 STAGES = ["structure", "windows", "mixture", "drifting", "bank", "one_motion", "evaluation"]
 
@@ -35,55 +35,35 @@ def system(draw, states, inputs, lags):
 
 def simulate(draw, motions, samples, stay=80.0, sd=0.02):
     states, inputs = motions[0][1].shape
-    lags = motions[0][0].shape[1] // states
     commands = np.repeat(draw.uniform(-0.5, 0.5, (samples // 4 + 1, inputs)), 4, 0)[:samples]
     mode = np.cumsum(draw.random(samples) < 1.0 / stay) % 2
-    noise = sd * draw.standard_normal((samples, states))
-    x = np.zeros((samples, states))
-    past = np.zeros((lags, states))
-    for k in range(samples - 1):
-        past = np.vstack([x[k], past[:-1]])
-        A, B = motions[mode[k]]
-        x[k + 1] = A @ past.ravel() + B @ commands[k] + noise[k]
-    return x, commands
+    return commands, switched(motions, mode, commands, sd * draw.standard_normal((samples, states)))
 
 
-def write(folder, name, runs, samples, states, inputs, lags, settings):
+def write(folder, runs, samples, states, inputs, lags, settings):
     draw = np.random.default_rng([states, inputs, lags, samples])
     motions = system(draw, states, inputs, lags)
-    x_names, u_names = [f"x{i + 1}" for i in range(states)], [f"u{i + 1}" for i in range(inputs)]
-    for run in range(runs):
-        x, u = simulate(draw, motions, samples)
-        np.savetxt(folder / f"{name}_{run:02d}.csv", np.column_stack([0.1 * np.arange(samples), x, u]), fmt="%.8g",
-                   delimiter=",", header=",".join(["time", *x_names, *u_names]), comments="")
-    split = ["split = last 30 %"] if runs == 1 else ["test = " + ", ".join(f"{r:02d}" for r in range(1, runs, 2))]
-    (folder / f"{name}.ini").write_text("\n".join(
-        ["[data]", f"inputs = {name}_*.csv", "state = " + ", ".join(x_names), "input = " + ", ".join(u_names), *split,
-         *settings, ""]))
+    split = "split = last 30 %" if runs == 1 else "test = " + ", ".join(f"{r:02d}" for r in range(1, runs, 2))
+    write_runs(folder, [simulate(draw, motions, samples) for _ in range(runs)], split, *settings)
 
 
 def stages_of(text):
     """Seconds per stage; a line of progress begins with the stage's name."""
-    seconds = dict.fromkeys(STAGES, 0.0)
-    for line in text.splitlines():
-        found = re.match(r"(\w+): .* in ([0-9.]+) s", line)
-        if found and found[1] in seconds:
-            seconds[found[1]] += float(found[2])
-    return seconds
+    lines = re.findall(r"^(\w+): .* in ([0-9.]+) s", text, re.M)
+    return {stage: sum(float(seconds) for name, seconds in lines if name == stage) for stage in STAGES}
 
 
-def measure(program, folder, name, most_s):
+def measure(program, folder, most_s):
     limit = lambda: resource.setrlimit(resource.RLIMIT_CPU, (most_s, most_s))
-    command = [program, "run", f"{name}.ini", "--job.threads", "1", "--archive.output", f"{name}.h5", "--force"]
+    command = [program, "run", "system.ini", "--job.threads", "1", "--archive.output", "out.h5", "--force"]
     process = subprocess.Popen(command, cwd=folder, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, preexec_fn=limit)
     text = process.stderr.read()
     _, status, usage = os.wait4(process.pid, 0)
-    processor = usage.ru_utime + usage.ru_stime
-    if os.WIFSIGNALED(status):
-        return f"over {most_s}", stages_of(text), usage.ru_maxrss / 1024
-    if status != 0:
-        raise SystemExit(f"{name}: status {status}\n{text}")
-    return f"{processor:.1f}", stages_of(text), usage.ru_maxrss / 1024
+    stopped = os.WIFSIGNALED(status)
+    if status != 0 and not stopped:
+        raise SystemExit(f"{folder}: status {status}\n{text}")
+    processor = f"over {most_s}" if stopped else f"{usage.ru_utime + usage.ru_stime:.1f}"
+    return processor, stages_of(text), usage.ru_maxrss / 1024
 
 
 def lagged(count, *more):
@@ -98,21 +78,15 @@ CASES += [("lags30", "one state, one input, 30 lags", 8, 1000, 1, 1, 30, lagged(
 
 
 def main():
-    parser = argparse.ArgumentParser()
-    parser.add_argument("modebank", type=Path)
-    parser.add_argument("folder", type=Path)
-    parser.add_argument("--only", action="append", help="a case: " + ", ".join(case[0] for case in CASES))
-    parser.add_argument("--seconds", type=int, default=1200)
-    options = parser.parse_args()
+    options = options_of(__doc__, "modebank", "folder", only="", seconds=1200)
     folder, program = options.folder.resolve(), options.modebank.resolve()
-    folder.mkdir(parents=True, exist_ok=True)
     print(f"{platform.processor() or platform.machine()}, {os.cpu_count()} processors, load average {os.getloadavg()[0]:.1f} at the start\n")
     print("| data | processor s | " + " | ".join(STAGES) + " | MB |\n|---|" + "---|" * (len(STAGES) + 2))
     for name, words, runs, samples, states, inputs, lags, settings in CASES:
-        if options.only and name not in options.only:
+        if options.only and name not in options.only.split(","):
             continue
-        write(folder, name, runs, samples, states, inputs, lags, settings)
-        processor, stages, memory = measure(program, folder, name, options.seconds)
+        write(folder / name, runs, samples, states, inputs, lags, settings)
+        processor, stages, memory = measure(program, folder / name, options.seconds)
         print(f"| {words} | {processor} | " + " | ".join(f"{stages[s]:.1f}" for s in STAGES) + f" | {memory:.0f} |", flush=True)
 
 

@@ -3,14 +3,14 @@
 
   measure_evidence.py build/modebank [--table build/evidence.csv] [--seeds N] [--first 0] [--jobs N] [--only NAME,NAME] [--quantum auto]
 
-This script simulates every system with numpy: twelve runs of 400 samples, with inputs drawn at each sample or held. Six runs
-train and six are held out, the default division of `modebank run`. Only [data] is configured. The script counts the answers
-in /evaluation/evidence.
+--seeds: of each system, else 12, of those with modes 60 and 20. --quantum: data.quantum of the program.
 
-Each system and seed adds a row to the table. Rows of the same revision that the table already has are skipped, so several
-calls add up. Rules are fixed before their seeds are run. Prints a Markdown table of all rows of the revision.
+Every system has twelve runs of 400 samples, with inputs drawn at each sample or held. Six train and six are held out, the
+default of `modebank run`, which has only [data] configured. Answers are those in /evaluation/evidence.
+
+Each system and seed adds a row to the table. Rows of the same revision that are there are skipped, so calls add up. Rules
+are fixed before their seeds are run. Prints a Markdown table of all rows of the revision.
 """
-import argparse
 import collections
 import concurrent.futures
 import csv
@@ -18,12 +18,13 @@ import os
 import pathlib
 import sys
 import tempfile
+import time
 
 import h5py
 import numpy as np
 
 from one_motion_systems import BENT, LINEAR
-from switching_system import Switching, run_program
+from switching_system import Switching, options_of, run_program
 
 RUNS, SAMPLES = 12, 400
 ANSWERS = ["evidence", "cannot tell", "no evidence", "one mode", "not comparable", "not yet", "refused", "crash"]
@@ -56,9 +57,9 @@ def trial(program, quantum, revision, group, name, seed):
                                         "modes_true": made.K if isinstance(made, Switching) else 1}
     with tempfile.TemporaryDirectory() as path:
         folder = pathlib.Path(path)
-        before = os.times()
+        start = time.monotonic()
         done = run_program(program, runs, folder, ["--data.quantum", quantum])
-        row["seconds"] = f"{os.times().elapsed - before.elapsed:.1f}"
+        row["seconds"] = f"{time.monotonic() - start:.1f}"
         if done.returncode != 0:
             print(done.stderr.strip()[-300:], file=sys.stderr)
             return row | {"answer": "refused" if done.returncode in (1, 2) else "crash"}
@@ -72,11 +73,10 @@ def table_of(rows):
     lines = ["| system | " + " | ".join(ANSWERS) + " |", "|---|" + "---|" * len(ANSWERS)]
     for group, systems in GROUPS.items():
         of_group = [r for r in rows if r["group"] == group]
-        for name in [n for n in systems if any(r["system"] == n for r in of_group)]:
-            counts = collections.Counter(r["answer"] for r in of_group if r["system"] == name)
-            lines.append(f"| {name} | " + " | ".join(str(counts[a]) for a in ANSWERS) + " |")
-        if of_group:
-            lines.append(f"| **{group}**, {len(of_group)} | " + " | ".join(str(sum(r["answer"] == a for r in of_group)) for a in ANSWERS) + " |")
+        parts = {name: [r for r in of_group if r["system"] == name] for name in systems}
+        for name, part in (parts | {f"**{group}**, {len(of_group)}": of_group}).items():
+            counts = collections.Counter(r["answer"] for r in part)
+            lines += [f"| {name} | " + " | ".join(str(counts[a]) for a in ANSWERS) + " |"] * bool(part)
     counted = [r for r in rows if r["system"] == "modes"]
     if counted:
         right = sum(r["answer"] == "evidence" and r["modes"] == r["modes_true"] for r in counted)
@@ -87,38 +87,25 @@ def table_of(rows):
     return "\n".join(lines)
 
 
-def read(path):
-    return list(csv.DictReader(path.open())) if path.exists() else []
-
-
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("--table", type=pathlib.Path)
-    parser.add_argument("--revision", default="")
-    parser.add_argument("--seeds", type=int, help="of each system; default: 12, of those with modes 60 and 20")
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--only", default="")
-    parser.add_argument("--quantum", default="none", help="data.quantum: with auto R is at least the rounding of readings that come in steps")
-    options = parser.parse_args()
+    options = options_of(__doc__, "program", table=pathlib.Path(os.devnull), revision="", seeds=0, first=0,
+                         jobs=os.cpu_count(), only="", quantum="none")
     wanted = options.only.split(",") if options.only else [name for systems in GROUPS.values() for name in systems]
-    known = {(r["system"], int(r["seed"])) for r in read(options.table) if r["revision"] == options.revision} if options.table else set()
+    options.table.touch()
+    rows = [r for r in csv.DictReader(options.table.open()) if r["revision"] == options.revision]
+    known = {(r["system"], int(r["seed"])) for r in rows}
     jobs = [(group, name, seed) for seed in range(options.first, options.first + (options.seeds or max(SEEDS[name] for name in wanted)))
             for group, systems in GROUPS.items() for name in systems
             if name in wanted and (name, seed) not in known and seed < options.first + (options.seeds or SEEDS[name])]
-    rows = []
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for row in pool.map(lambda job: trial(options.program, options.quantum, options.revision, *job), jobs):
             rows.append({key: str(value) for key, value in row.items()})
-            if options.table:
-                new = not options.table.exists()
-                with options.table.open("a", newline="") as file:
-                    writer = csv.DictWriter(file, COLUMNS)
-                    if new:
-                        writer.writeheader()
-                    writer.writerow(row)
-    print(table_of([r for r in (read(options.table) if options.table else rows) if r["revision"] == options.revision]))
+            with options.table.open("a", newline="") as file:
+                writer = csv.DictWriter(file, COLUMNS)
+                if file.tell() == 0:
+                    writer.writeheader()
+                writer.writerow(row)
+    print(table_of(rows))
     return 0
 
 

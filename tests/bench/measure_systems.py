@@ -8,10 +8,9 @@ and with R = Q / 4. Mean stays are 100 to 400 samples (drawn per seed) or 20 win
 configured, apart from --window.model linear, because the structure is known here.
 
 Regret: held-out log score of the filter with the true parameters minus that of the bank. Stated errors: theta of each mode minus
-the nearest true mode, in the standard errors of the mode, if the number of modes is right. Prints a Markdown table. Prints
+the nearest true mode, in the standard errors of the mode, if the number of modes is right. Prints a Markdown table, and
 the share of stated 95 % intervals that contain the truth, over all systems, with 95 % intervals (Clopper-Pearson).
 """
-import argparse
 import concurrent.futures
 import json
 import os
@@ -23,7 +22,7 @@ import h5py
 import numpy as np
 from scipy.stats import beta
 
-from switching_system import DT_S, SD, Switching, run_program
+from switching_system import DT_S, SD, Switching, options_of, run_program
 
 RUNS, SAMPLES, WINDOW = 20, 800, 25
 ONE = [([[-.15]], [[-.15, .15]]), ([[-.40]], [[-.15, .30]]), ([[-.05]], [[.10, .02]])]
@@ -85,10 +84,8 @@ def trial(program, name, seed):
         if done.returncode != 0:
             return {"name": name, "seed": seed, "failed": done.stderr.strip().splitlines()[-1:]}
         with h5py.File(folder / "out.h5") as file:
-            ours = [file["evaluation/bank/log_density"][run["first"]:run["first"] + run["samples"]] for run in file["data/runs"] if run["role"] == b"test"]
-            truth = [system.log_density(*runs[i]) for i in range(1, RUNS, 2)]
-            regret = float(np.nanmean(np.concatenate([t - o for t, o in zip(truth, ours)])))
-            bank = file["bank"]
+            ours, bank = file["evaluation/bank/log_density"][:].reshape(RUNS, -1)[1::2], file["bank"]
+            regret = float(np.nanmean([system.log_density(*run) for run in runs[1::2]] - ours))
             found = len(bank["parameters"])
             return {"name": name, "seed": seed, "regret": regret, "modes": found,
                     "bound": free_parameters(system) / (RUNS // 2 * SAMPLES) + 0.002, "R": float(bank["R"][0, 0] / max(system.R, 1e-12)),
@@ -118,14 +115,7 @@ def coverage(results):
 
 
 def main():
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("program")
-    parser.add_argument("--seeds", type=int, default=50)
-    parser.add_argument("--first", type=int, default=0)
-    parser.add_argument("--jobs", type=int, default=os.cpu_count())
-    parser.add_argument("--only", default="")
-    parser.add_argument("--rows", help="one line of JSON per seed goes here")
-    options = parser.parse_args()
+    options = options_of(__doc__, "program", seeds=50, first=0, jobs=os.cpu_count(), only="", rows=os.devnull)
     wanted = [name for name in SYSTEMS if options.only in name]
     seeds = range(options.first, options.first + options.seeds)
     print("| system | seeds | regret, median (bound) | above 0.05 | right number (fewer, more) | rms error in stated errors | failed |\n|" + "---|" * 7)
@@ -133,9 +123,8 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(options.jobs) as pool:
         for name in wanted:
             results = list(pool.map(lambda seed, name=name: trial(options.program, name, seed), seeds))
-            if options.rows:
-                with open(options.rows, "a", encoding="utf-8") as rows:
-                    rows.writelines(json.dumps(r) + "\n" for r in results)
+            with open(options.rows, "a", encoding="utf-8") as rows:
+                rows.writelines(json.dumps(r) + "\n" for r in results)
             print(row(name, results), flush=True)
             every += results
     print(coverage(every))

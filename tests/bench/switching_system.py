@@ -1,6 +1,8 @@
 """Systems that switch between linear modes (simulated by numpy), and runs of the program; what models of known systems are
 compared with: filters with the true parameters, step responses, and fits by scipy."""
+import argparse
 import math
+import pathlib
 import subprocess
 
 import numpy as np
@@ -11,13 +13,23 @@ DT_S = 0.1
 SD = 0.02
 
 
-def inputs(g, run, samples):
+def options_of(doc, *paths, **defaults):
+    """Paths and options of the command line; an option has the type of its default."""
+    parser = argparse.ArgumentParser(description=doc, formatter_class=argparse.RawDescriptionHelpFormatter)
+    for name in paths:
+        parser.add_argument(name, type=pathlib.Path)
+    for name, default in defaults.items():
+        parser.add_argument("--" + name, type=type(default), default=default)
+    return parser.parse_args()
+
+
+def inputs(g, run, samples, count=2):
     """Inputs: drawn at each sample in odd runs, held for 3 to 24 samples in even ones."""
-    u = np.zeros((samples, 2))
+    u = np.zeros((samples, count))
     k = 0
     while k < samples:
         held = 1 if run % 2 else int(g.integers(3, 25))
-        u[k:k + held] = g.uniform(-0.5, 0.5, 2)
+        u[k:k + held] = g.uniform(-0.5, 0.5, count)
         k += held
     return u
 
@@ -32,6 +44,16 @@ def sticky(g, count, stay_samples, samples):
         mode = int(g.choice([m for m in range(count) if m != mode])) if count > 1 else 0
         k += stay
     return z
+
+
+def switched(motions, mode, u, w):
+    """States x[k+1] = A (x[k], x[k-1], ...) + B u[k] + w[k] from zero on, with the (A, B) of each sample's mode."""
+    n = len(motions[0][1])
+    x, past = np.zeros((len(u), n)), np.zeros((motions[0][0].shape[1] // n, n))
+    for k, m in enumerate(mode[:-1]):
+        past = np.vstack([x[k], past[:-1]])
+        x[k + 1] = motions[m][0] @ past.ravel() + motions[m][1] @ u[k] + w[k]
+    return x
 
 
 def signal(g, shape, low, high, count):
@@ -108,7 +130,7 @@ class Switching:
     """x[k+1] = x[k] + A x[k] + B u[k] + w, w of the deviation sd of the mode, y = x + v of variance R; mean stays of dwell samples."""
 
     def __init__(self, A, B, sd, R, dwell):
-        self.A, self.B, self.sd, self.R, self.dwell = A, B, sd, R, dwell
+        self.A, self.B, self.sd, self.R, self.dwell = A, B, np.array(sd), R, dwell
         self.K, self.n = len(A), A[0].shape[0]
 
     @staticmethod
@@ -121,10 +143,9 @@ class Switching:
         return Switching(A, B, sd, SD ** 2 / 4 if g.integers(2) else 0.0, dwell)
 
     def simulate(self, g, run, samples):
-        u, z, x = inputs(g, run, samples), sticky(g, self.K, self.dwell, samples), np.zeros((samples, self.n))
-        for k in range(samples - 1):
-            m = z[k]
-            x[k + 1] = x[k] + self.A[m] @ x[k] + self.B[m] @ u[k] + self.sd[m] * g.standard_normal(self.n)
+        u, z = inputs(g, run, samples), sticky(g, self.K, self.dwell, samples)
+        noise = self.sd[z[:-1], None] * g.standard_normal((samples - 1, self.n))
+        x = switched([(np.eye(self.n) + A, B) for A, B in zip(self.A, self.B)], z, u, noise)
         return u, x + math.sqrt(self.R) * g.standard_normal(x.shape)
 
     def log_density(self, u, y):
@@ -138,13 +159,26 @@ class Switching:
         return np.r_[np.nan, filtered(F, V, eye, R, x, P, pushed[:, 1:], y[None, 1:], T)[2][:, 0]]
 
 
+def write_tables(folder, ini, tables, form, states, inputs, *settings, more=()):
+    """run_*.csv of these channels after the time, and a configuration with nothing but [data]."""
+    folder.mkdir(parents=True, exist_ok=True)
+    for run, table in enumerate(tables):
+        header = ",".join(["time", *states, *inputs, *more])
+        np.savetxt(folder / f"run_{run:02d}.csv", table, form, ",", header=header, comments="")
+    channels = "state = " + ", ".join(states), "input = " + ", ".join(inputs)
+    (folder / ini).write_text("\n".join(["[data]", "inputs = run_*.csv", "time = time", *channels, *settings, ""]))
+
+
+def write_runs(folder, runs, *settings):
+    """The same for runs of (inputs, states)."""
+    u, x = runs[0]
+    tables = [np.c_[DT_S * np.arange(len(x)), x, u] for u, x in runs]
+    names = ([f"{letter}{i}" for i in range(v.shape[1])] for letter, v in (("y", x), ("u", u)))
+    write_tables(folder, "system.ini", tables, "%.9g", *names, *settings)
+
+
 def run_program(program, runs, folder, extra=()):
     """`modebank run` with nothing but [data] configured, on runs of (inputs, states); archive: out.h5."""
-    n = runs[0][1].shape[1]
-    for i, (u, y) in enumerate(runs):
-        names = [f"y{j}" for j in range(n)] + ["u0", "u1"]
-        np.savetxt(folder / f"run_{i:02d}.csv", np.c_[DT_S * np.arange(len(y)), y, u], "%.9g", ",", header="time," + ",".join(names), comments="")
-    states = ", ".join(f"y{j}" for j in range(n))
-    (folder / "system.ini").write_text(f"[data]\ninputs = run_*.csv\nstate = {states}\ninput = u0, u1\ntime = time\n")
+    write_runs(folder, runs)
     return subprocess.run([program, "run", folder / "system.ini", "--archive.output", folder / "out.h5", "--job.threads", "1", *extra],
                           capture_output=True, text=True)

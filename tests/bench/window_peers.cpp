@@ -111,9 +111,7 @@ void fit_tiny_solver(const PeerData& data, Loss loss, double scale, Index window
   solver.options.cost_threshold = 1e-300;
   Eigen::Vector3d p = Eigen::Vector3d::Zero();
   for (Index k = 0; k < windows; ++k) {
-    const TinyFunction window{&data.x[static_cast<std::size_t>(k)], &data.left[static_cast<std::size_t>(k)],
-                              &data.right[static_cast<std::size_t>(k)], &data.increment[static_cast<std::size_t>(k)],
-                              function.get()};
+    const TinyFunction window{&data.x[k], &data.left[k], &data.right[k], &data.increment[k], function.get()};
     solver.Solve(window, &p);
     std::copy(p.data(), p.data() + 3, fits[k].theta);
     Eigen::Matrix3d H = Eigen::Matrix3d::Zero();

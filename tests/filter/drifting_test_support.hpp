@@ -41,7 +41,7 @@ inline Bank example_drifting(Index n, Index m, Index lags) {
 inline Bank with_levels(Bank model) {
   const Index n = model.structure.states;
   model.running_noise.level = Eigen::VectorXd::LinSpaced(n, 1.0, 1.5) * Eigen::RowVector3d(0.1, 1.0, 20.0);
-  model.running_noise.switching = (Eigen::Matrix3d() << 0.9, 0.1, 0.0, 0.05, 0.9, 0.05, 0.1, 0.2, 0.7).finished();
+  model.running_noise.switching = Eigen::Matrix3d{{0.9, 0.1, 0.0}, {0.05, 0.9, 0.05}, {0.1, 0.2, 0.7}};
   return model;
 }
 

@@ -10,7 +10,7 @@
 
 namespace modebank::test {
 
-inline Bank example_bank(Eigen::Index n, Eigen::Index m, Eigen::Index K, double r = 1e-4) {
+inline Bank example_bank(Index n, Index m, Index K, double r = 1e-4) {
   return filter::Bank(example_description(n, m, K, r)).internal();
 }
 
@@ -20,7 +20,7 @@ struct SimulatedTruth {
   Eigen::VectorXi mode;
 };
 
-inline SimulatedTruth simulate_truth(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
+inline SimulatedTruth simulate_truth(const Bank& bank, Index samples, std::uint64_t seed) {
   const filter::Bank copy(std::make_shared<const Bank>(bank));
   const SimulatedRun made = simulate_description(copy.description(), samples, seed);
   SimulatedTruth result{to_trajectory(made.run, bank.C.rows(), bank.structure.inputs), made.mode};
@@ -29,7 +29,7 @@ inline SimulatedTruth simulate_truth(const Bank& bank, Eigen::Index samples, std
 }
 
 /// The run without its true states.
-inline Trajectory simulate_bank(const Bank& bank, Eigen::Index samples, std::uint64_t seed) {
+inline Trajectory simulate_bank(const Bank& bank, Index samples, std::uint64_t seed) {
   Trajectory run = simulate_truth(bank, samples, seed).run;
   run.truth.resize(0, 0);
   return run;
@@ -74,16 +74,16 @@ inline DiagnosticsRow row_of(const Bank& bank, const std::vector<Trajectory>& ru
 /// The row of a filter on signals with these scores. `nis`: factor on the NIS.
 inline DiagnosticsRow row_of(const std::vector<std::vector<double>>& scores, bool chi_square_nis = false,
                              double nis = 1.0) {
-  const Eigen::Index signals = std::ssize(scores), samples = std::ssize(scores[0]) + 1;
+  const Index signals = std::ssize(scores), samples = std::ssize(scores[0]) + 1;
   const Bank bank = single_mode(example_bank(signals, 0, 1, 1e-6), 0);
   Trajectory run;
   run.state.setZero(signals, samples);
   run.input.setZero(0, samples);
   RunEvaluation e = evaluate_run(bank, run, {});
   e.nis.tail(samples - 1).setZero();
-  for (Eigen::Index i = 0; i < signals; ++i)
-    for (Eigen::Index k = 1; k < samples; ++k) {
-      const double z = scores[static_cast<std::size_t>(i)][static_cast<std::size_t>(k - 1)];
+  for (Index i = 0; i < signals; ++i)
+    for (Index k = 1; k < samples; ++k) {
+      const double z = scores[i][k - 1];
       e.pit(i, k) = 0.5 * std::erfc(-z / std::sqrt(2.0));
       e.nis(k) += nis * z * z;
     }

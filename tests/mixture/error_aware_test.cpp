@@ -84,7 +84,7 @@ EmResult direct_step(const Eigen::MatrixXd& points, const Eigen::MatrixXd& error
   const Index F = points.rows(), N = points.cols(), K = mixture.components();
   Eigen::MatrixXd densities(K, N);
   const auto total = [&](Index k, Index i) -> Eigen::MatrixXd {
-    return mixture.covariances[static_cast<std::size_t>(k)] + errors.col(i).reshaped(F, F);
+    return mixture.covariances[k] + errors.col(i).reshaped(F, F);
   };
   for (Index i = 0; i < N; ++i)
     for (Index k = 0; k < K; ++k) {
@@ -95,7 +95,7 @@ EmResult direct_step(const Eigen::MatrixXd& points, const Eigen::MatrixXd& error
     }
   GaussianMixture next = mixture;
   for (Index k = 0; k < K; ++k) {
-    const Eigen::MatrixXd& covariance = mixture.covariances[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXd& covariance = mixture.covariances[k];
     const Eigen::RowVectorXd r = densities.row(k).array() / densities.colwise().sum().array();
     Eigen::MatrixXd expected(F, N), spread = Eigen::MatrixXd::Zero(F, F);
     for (Index i = 0; i < N; ++i) {
@@ -108,7 +108,7 @@ EmResult direct_step(const Eigen::MatrixXd& points, const Eigen::MatrixXd& error
     const Eigen::MatrixXd off = expected.colwise() - next.means.col(k);
     Eigen::MatrixXd second = (off * r.asDiagonal() * off.transpose() + spread) / r.sum();
     if (mixture.type == CovarianceType::diagonal) second = Eigen::MatrixXd(second.diagonal().asDiagonal());
-    next.covariances[static_cast<std::size_t>(k)] = second;
+    next.covariances[k] = second;
   }
   EmResult result;
   result.mixture = next;

@@ -28,7 +28,7 @@ Eigen::Matrix2d covariance_of(const GaussianMixture& m) {
   Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
   for (Eigen::Index k = 0; k < m.components(); ++k) {
     const Eigen::Vector2d d = m.means.col(k) - mean_of(m);
-    sum += m.weights(k) * (m.covariances[static_cast<std::size_t>(k)] + d * d.transpose());
+    sum += m.weights(k) * (m.covariances[k] + d * d.transpose());
   }
   return sum;
 }

@@ -105,7 +105,7 @@ TEST(Select, MembershipsCoverClusteredWindowsOnly) {
 /// these probabilities independently.
 TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
   FeatureCloud cloud = cloud_of(draw(three_clusters(6.0), 300, 3), 3);
-  for (Index i = 0; i < 300; ++i) cloud.windows[static_cast<std::size_t>(i)] = i + 2;
+  for (Index i = 0; i < 300; ++i) cloud.windows[i] = i + 2;
   FeatureCloud assigned;
   assigned.points = (Eigen::MatrixXd(2, 2) << 6.0, 0.0, 50.0, 1.0).finished();
   assigned.covariances = Eigen::MatrixXd::Zero(4, 2);
@@ -125,13 +125,13 @@ TEST(Select, AssignedWindowsGetTheComponentsThatSuitThem) {
   for (const Index i : {Index{0}, Index{1}}) {
     Eigen::VectorXd expected(result.mixture.components());
     for (Index k = 0; k < expected.size(); ++k) {
-      const Eigen::Matrix2d S = result.mixture.covariances[static_cast<std::size_t>(k)] +
-                                Eigen::Matrix2d(assigned.covariances.col(i).reshaped(2, 2));
+      const Eigen::Matrix2d S =
+          result.mixture.covariances[k] + Eigen::Matrix2d(assigned.covariances.col(i).reshaped(2, 2));
       const Eigen::Vector2d d = assigned.points.col(i) - result.mixture.means.col(k);
       expected(k) = result.mixture.weights(k) * std::exp(-0.5 * d.dot(S.inverse() * d)) / std::sqrt(S.determinant());
     }
     expected /= expected.sum();
-    const Index window = assigned.windows[static_cast<std::size_t>(i)];
+    const Index window = assigned.windows[i];
     EXPECT_TRUE(near(all.col(window), expected, 1e-12));
     Index most_likely = -1;
     expected.maxCoeff(&most_likely);

@@ -72,10 +72,10 @@ struct Misfit {
 Misfit misfit(const GaussianMixture& fit, const GaussianMixture& truth) {
   Misfit result{0.0, 0.0};
   for (Index k = 0; k < 2; ++k) {
-    const Eigen::MatrixXd& spread = truth.covariances[static_cast<std::size_t>(k)];
+    const Eigen::MatrixXd& spread = truth.covariances[k];
     const Eigen::ArrayXd off = (fit.means.col(k) - truth.means.col(k)).array() / spread.diagonal().array().sqrt();
     result.mean = std::max(result.mean, off.abs().tail(2).maxCoeff());
-    const double trace = fit.covariances[static_cast<std::size_t>(k)].bottomRightCorner(2, 2).trace();
+    const double trace = fit.covariances[k].bottomRightCorner(2, 2).trace();
     result.inflation = std::max(result.inflation, trace / spread.bottomRightCorner(2, 2).trace());
   }
   return result;

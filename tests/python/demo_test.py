@@ -86,18 +86,14 @@ class Demo(unittest.TestCase):
         self.assertIn("[window]", self.archive.config)
         self.assertTrue({"filter", "run", "log_score"} <= set(self.archive.summary.columns))
 
-    def test_families_hold_every_mode_once(self):
-        families = self.archive.families
-        self.assertEqual(sorted(k for family in families for k in family["modes"]), list(range(self.archive.modes)))
-        uses = [family["use"] for family in families]
+    def test_motions_hold_every_mode_once(self):
+        motions = self.archive.motions
+        self.assertEqual(sorted(k for motion in motions for k in motion["modes"]), list(range(self.archive.modes)))
+        uses = [motion["use"] for motion in motions]
         self.assertEqual(uses, sorted(uses, reverse=True))
         self.assertAlmostEqual(sum(uses), 1.0, 9)
-        names = self.archive.attributes("/bank").get("mode_names", [""] * self.archive.modes)
-        for family in families:
-            self.assertEqual(len({names[k] for k in family["modes"]}), 1, "modes of one label")
-            self.assertEqual(family["gain"].shape, (1, 2))
-        labels = [names[family["modes"][0]] for family in families if names[family["modes"][0]]]
-        self.assertEqual(len(labels), len(set(labels)))
+        for motion in motions:
+            self.assertEqual(motion["gain"].shape, (1, 2))
 
     def test_the_bank_is_the_archives(self):
         bank = self.archive.bank

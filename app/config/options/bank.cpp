@@ -11,7 +11,7 @@ std::vector<Option> bank_options() {
             "source of a mode's parameters: least squares over the windows of its component, or the component's mean; "
             "with mean, modes that are unstable or have few windows stay in the bank",
             MODEBANK_FIELD(bank.theta))
-          .touch("mean, for the published recipe", competitors),
+          .touch("mean, for the published recipe", bank),
       text("bank.mode_names", "names",
            "names of the modes in the bank's order, separated by commas. A mode without a name takes the label "
            "(data.label) of at least 60 % of its held-out samples",
@@ -21,7 +21,7 @@ std::vector<Option> bank_options() {
             "source of the mode transition matrix: counted from the windows' labels, or made from bank.stay. logit: in "
             "a refined bank the probabilities are a function of state and input where training runs left out gain",
             MODEBANK_FIELD(bank.transition))
-          .touch("stay, when the log has few switches; logit, when switches depend on state or input", competitors),
+          .touch("stay, when the log has few switches; logit, when switches depend on state or input", bank),
       numeric("bank.stay", above_to(0, 1), "",
               "probability that a mode continues at the next sample, for bank.transition = stay; 1: modes never change",
               MODEBANK_FIELD(bank.stay))
@@ -29,7 +29,7 @@ std::vector<Option> bank_options() {
       numeric("bank.process_variance", above(0), "state unit^2",
               "process noise variance Q of every state; empty: each mode learns its own",
               MODEBANK_FIELD(bank.process_variance))
-          .touch("the Q that you would tune by hand, to compare; such a bank is not refined", competitors),
+          .touch("the Q that you would tune by hand, to compare; such a bank is not refined", bank),
       numeric("bank.measurement_variance", above(0), "state unit^2",
               "measurement noise variance R; empty: the one that the baseline learns",
               MODEBANK_FIELD(bank.measurement_variance))
@@ -39,8 +39,7 @@ std::vector<Option> bank_options() {
             "modes stay. auto: em, but none for a motion model, bank.theta = mean, bank.transition = stay and a "
             "given bank.process_variance",
             MODEBANK_FIELD(bank.refine))
-          .touch("none, for a first look at the data in seconds, or to keep the mixture's own modes", competitors,
-                 basic),
+          .touch("none, for a first look at the data in seconds, or to keep the mixture's own modes", bank, basic),
   };
 }
 

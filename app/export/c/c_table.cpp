@@ -44,9 +44,9 @@ std::string modes(const ExportedBank& exported, const std::string& prefix) {
   for (std::size_t k = 0; k < names.size(); ++k)
     if (exported.mode_names[k] == fmt::format("mode {}", k)) names[k] = std::to_string(k);
   std::vector<std::string> remarks = exported.mode_names;
-  for (const ModeFamily& family : exported.families)
-    for (const Index k : family.modes)
-      if (family.modes.size() > 1) remarks[static_cast<std::size_t>(k)] += ", one of the family " + family.title();
+  for (const Motion& motion : exported.motions)
+    for (const Index k : motion.modes)
+      if (motion.modes.size() > 1) remarks[static_cast<std::size_t>(k)] += ", of the motion " + motion.title();
   return enumeration("Places in mode_probability", prefix, names, remarks);
 }
 

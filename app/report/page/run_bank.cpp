@@ -134,61 +134,45 @@ json screened_of(const Bank& bank) {
   return list;
 }
 
-json gains_cells(const ModeFamily& family, const std::vector<bool>& unidentifiable) {
-  json cells = json::array();
-  for (Index i = 0; i < family.gain.rows(); ++i)
-    for (Index j = 0; j < family.gain.cols(); ++j) {
-      const bool is_unidentifiable = unidentifiable[static_cast<std::size_t>(i * family.gain.cols() + j)];
-      cells.push_back(is_unidentifiable ? number(NAN, not_identifiable)
-                                        : estimate(family.gain(i, j), family.gain_error(i, j)));
-    }
-  return cells;
-}
-
-/// Number of families that have their own row. All other families share one row.
-Index told_families(const std::vector<ModeFamily>& families) {
-  std::vector<double> use;
-  for (const ModeFamily& family : families) use.push_back(family.use);
-  return told_of(use);
-}
-
-/// For each family: title, modes, use, stay, time constant and gains.
-json families_of(const Archive& archive, const std::vector<ModeFamily>& families, const std::string& unit) {
+/// For each motion: title, modes, use, stay, time constant and gains.
+json motions_json(const Archive& archive, const std::vector<Motion>& motions, const std::string& unit) {
   const LinearStructure& structure = archive.bank->structure;
   const std::vector<bool> unidentifiable = unidentifiable_gains(archive, structure);
   const bool no_decays = unidentifiable_decays(archive, structure);
   json list = json::array();
-  for (const ModeFamily& family : families) {
-    const UsedMode stay{family.modes.front(), family.use, family.stay_s, family.at_least};
-    list.push_back({{"title", family.title()},
-                    {"name", family.name},
-                    {"modes", family.modes},
-                    {"use", number(family.use, fmt::format("{:.1f} %", 100 * family.use))},
-                    {"stay", number(family.stay_s, stay_words(stay, unit))},
-                    {"decays", no_decays ? number(NAN, not_identifiable)
-                                         : number(family.slowest.time_constant_s, time_words(family, unit, "±"))},
-                    {"gains", gains_cells(family, unidentifiable)}});
+  for (const Motion& motion : motions) {
+    const UsedMode stay{motion.modes.front(), motion.use, motion.stay_s, motion.at_least};
+    list.push_back(
+        {{"title", motion.title()},
+         {"modes", motion.modes},
+         {"use", number(motion.use, fmt::format("{:.1f} %", 100 * motion.use))},
+         {"stay", number(motion.stay_s, stay_words(stay, unit))},
+         {"decays", no_decays ? number(NAN, not_identifiable)
+                              : number(motion.slowest.time_constant_s, decay_words(motion.slowest, "±", unit))},
+         {"gains",
+          estimates(motion.gain.transpose().reshaped(), motion.gain_error.transpose().reshaped(), unidentifiable)}});
   }
   return list;
 }
 
-/// For each label, the families to which the bank assigns the samples with this label. Null without labels.
-json label_section(const Archive& archive, const std::vector<ModeFamily>& families) {
+/// For each label, the motions to which the bank assigns the samples with this label. Null without labels.
+json label_section(const Archive& archive, const std::vector<Motion>& motions) {
   if (archive.confusion.empty()) return nullptr;
-  const std::vector<Index> family = family_of_modes(families);
-  const auto told = static_cast<std::size_t>(told_families(families));
+  const auto told = static_cast<std::size_t>(told_of(motions));
   struct Label {
     std::string name;
     Index samples = 0;
-    std::vector<double> shares;  // one share per family with its own row, then the share of all others
+    std::vector<double> shares;  // one share per motion with its own row, then the share of all others
   };
   std::vector<Label> labels;
   for (const ConfusionRow& row : archive.confusion) {
     if (labels.empty() || labels.back().name != row.label)
       labels.push_back({row.label, 0, std::vector<double>(told + 1, 0.0)});
     labels.back().samples += row.samples;
-    const auto f = static_cast<std::size_t>(family[static_cast<std::size_t>(row.mode)]);
-    labels.back().shares[std::min(f, told)] += row.share;
+    const auto place = std::find_if(motions.begin(), motions.end(), [&](const Motion& motion) {
+      return motion.number == archive.bank->motion_of(row.mode);
+    });
+    labels.back().shares[std::min(static_cast<std::size_t>(place - motions.begin()), told)] += row.share;
   }
   json rows = json::array();
   for (const Label& label : labels) {
@@ -207,14 +191,14 @@ nlohmann::json bank_section(const Archive& archive) {
   const Units units(recording);
   const std::string unit = time_unit(resolved_values(archive.config));
   const Role role = diagnosis(archive, "bank", Role::test) ? Role::test : Role::train;
-  const std::vector<ModeFamily> families = mode_families(archive);
-  const Index told = told_families(families);
+  const std::vector<Motion> motions = motions_of(archive);
+  const Index told = told_of(motions);
   std::vector<Index> order;
-  for (const ModeFamily& family : families) order.insert(order.end(), family.modes.begin(), family.modes.end());
-  const auto others =
-      static_cast<Index>(std::count_if(order.begin(), order.end(), [of = family_of_modes(families), told](Index k) {
-        return of[static_cast<std::size_t>(k)] >= told;
-      }));
+  std::size_t told_modes = 0;
+  for (const Motion& motion : motions) {
+    order.insert(order.end(), motion.modes.begin(), motion.modes.end());
+    if (&motion - motions.data() < told) told_modes = order.size();
+  }
   json modes = json::array();
   for (Index k = 0; k < bank.mode_count(); ++k) {
     modes.push_back(mode_row(archive, bank, k, unit));
@@ -238,13 +222,13 @@ nlohmann::json bank_section(const Archive& archive) {
           {"noise_name", with_unit("step noise sd", common_unit(recording.states))},
           {"noise_variance_name", with_unit("Measurement noise variance R", square_of(common_unit(recording.states)))},
           {"R", number_list(bank.R.diagonal())},
-          {"families", families_of(archive, families, unit)},
-          {"told_families", told},
+          {"motions", motions_json(archive, motions, unit)},
+          {"told_motions", told},
           {"order", order},
-          {"told", std::ssize(order) - others},
+          {"told", told_modes},
           {"transition", transition_of(bank)},
           {"switch_weights", switch_weights_of(bank)},
-          {"confusion", label_section(archive, families)},
+          {"confusion", label_section(archive, motions)},
           {"screened", screened_of(bank)},
           {"refined", archive.unrefined.has_value()}};
 }

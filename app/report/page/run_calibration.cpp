@@ -64,7 +64,7 @@ json cards_of(const FirstScreen& screen) {
   return cards;
 }
 
-json modes_of(const FirstScreen& screen) {
+json modes_of(const Archive& archive, const FirstScreen& screen) {
   if (screen.modes.rows.empty()) return nullptr;
   json rows = json::array();
   for (const ModeTable::Row& row : screen.modes.rows) {
@@ -76,8 +76,11 @@ json modes_of(const FirstScreen& screen) {
   const std::string others = modes.others == 0 ? ""
                                                : fmt::format("and {} other{}, used {:.1f} % together", modes.others,
                                                              modes.others == 1 ? "" : "s", 100 * modes.others_use);
-  return {{"count", screen.mode_count}, {"families", modes.families},  {"headings", modes.headings}, {"rows", rows},
-          {"others", others},           {"gain_unit", modes.gain_unit}};
+  return {{"title", motion_words(*archive.bank)},
+          {"headings", modes.headings},
+          {"rows", rows},
+          {"others", others},
+          {"gain_unit", modes.gain_unit}};
 }
 
 /// true for evidence and a reliable band; null if undecided
@@ -89,19 +92,19 @@ json goodness(const FirstScreen& screen) {
   return *screen.answer == Answer::evidence && screen.verdict == Calibration::calibrated;
 }
 
-std::string headline(const FirstScreen& screen) {
+std::string headline(const Archive& archive, const FirstScreen& screen) {
   if (!screen.answer) return "nothing was judged";
   if (*screen.answer == Answer::one_mode) return answer_words(*screen.answer);
   // Without evidence for modes, the text only states how many modes the bank has.
-  return fmt::format("{} ({}{} modes)", answer_words(*screen.answer),
-                     *screen.answer == Answer::evidence ? "" : "the bank has ", screen.mode_count);
+  return fmt::format("{} ({}{})", answer_words(*screen.answer),
+                     *screen.answer == Answer::evidence ? "" : "the bank has ", counted_words(*archive.bank));
 }
 
 }  // namespace
 
 nlohmann::json verdict_section(const Archive& archive) {
   const FirstScreen screen = make_first_screen(archive, resolved_values(archive.config));
-  return {{"headline", headline(screen)},
+  return {{"headline", headline(archive, screen)},
           {"answer", screen.answer ? json(name_of(*screen.answer)) : json()},
           {"good", goodness(screen)},
           {"equations", archive.finding ? archive.finding->equations : std::vector<std::string>()},
@@ -111,7 +114,7 @@ nlohmann::json verdict_section(const Archive& archive) {
           {"warning", screen.warning},
           {"read", screen.read},
           {"cards", cards_of(screen)},
-          {"modes", modes_of(screen)}};
+          {"modes", modes_of(archive, screen)}};
 }
 
 }  // namespace modebank::app::report

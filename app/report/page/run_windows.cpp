@@ -173,6 +173,7 @@ nlohmann::json windows_section(const Archive& archive, PageArrays& arrays) {
       {"default_axes", default_axes(fits, of_parameters, cloud.points.rows())},
       {"values", values},
       {"refined", archive.unrefined.has_value()},
+      {"noise", sensor_noise_words(archive)},
       {"level", drawn_level},
       {"limit2", chi_square_quantile(drawn_level, 2.0)}};
   if (archive.mixture) {

@@ -1,6 +1,5 @@
-#include "app/study/answers/answer_tables.hpp"
-
 #include "app/study/answers/answers_text.hpp"
+#include "app/study/answers/merge_study.hpp"
 
 namespace modebank::app {
 namespace {

@@ -9,7 +9,6 @@
 #include <map>
 
 #include "app/config/option_text.hpp"
-#include "app/study/answers/answer_tables.hpp"
 #include "io/files/csv_field.hpp"
 #include "io/files/replace_file.hpp"
 #include "modebank/base/error.hpp"

@@ -19,6 +19,9 @@ StudyTable collect_table(const TrialStore& store, const StudyPlan& plan, const s
 /// The rows with these scores. `scores` has one entry per row; nullopt for a trial without scores.
 StudyTable with_scores(StudyTable table, const std::vector<std::optional<TrialScores>>& scores);
 
+/// Tables of /answers in study.h5: main_effects, influence, best. `trial`: keys of trials.
+std::vector<NamedTable> answer_tables(const StudyTable& table, const Answers& answers);
+
 /// Content of study.h5 for a table.
 StudyFile study_file_of(const StudyPlan& plan, const StudyTable& table, const Answers& answers);
 

@@ -54,9 +54,8 @@ LearningInputs inputs_with(const std::optional<FoundStructure>& structure, const
 }
 
 /// The decisions of the last stage of learn_all, in their order.
-void learn_banks(const StageData& data, BankInputs inputs, const LearningHooks& hooks, Learning& learned) {
+void learn_banks(const StageData& data, const BankInputs& inputs, const LearningHooks& hooks, Learning& learned) {
   static_cast<BankPart&>(learned) = {};
-  if (learned.noise_only && !learned.noise_only->noise_factor.empty()) inputs.bank.em.noise_by_input = true;
   // Modes, their number, transitions: Hamilton's log score of left-out runs. R: that of the filter.
   Refinement refined = learn_modes(data, learned, inputs);
   hooks.refined(refined);
@@ -111,8 +110,7 @@ void learn_all(const Recording& recording, const LearningOptions& asked, Stage l
   cached(Stage::mixture, [&] { learned.mixture = cluster(data, *learned.windows, inputs.mixture); });
   if (last < Stage::bank) return;
 
-  // Noise of baseline and noise_only: likelihood. Factor on all noise: log score of left-out runs. Terms of nonlinear:
-  // log score of left-out rows.
+  // Noise of baseline and noise_only: likelihood. Terms of nonlinear: log score of left-out rows.
   learned.terms_asked = inputs.competitors.terms != "none";
   cached(Stage::competitors, [&] {
     static_cast<CompetitorsPart&>(learned) = learn_competitors(data, *learned.windows, inputs.competitors);

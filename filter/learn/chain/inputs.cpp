@@ -58,9 +58,6 @@ LearningInputs learning_inputs(const LearningOptions& options) {
 
   CompetitorInputs& competitors = inputs.competitors;
   competitors = {window, single ? "none" : options.terms, bank.bank.em, options.other_lags};
-  // Noise that follows the input needs the support of all later steps.
-  competitors.noise_by_input = bank.bank.refine == Refine::em && options.bank.transition != TransitionSource::logit &&
-                               !options.bank.measurement_variance && options.filter.variant == FilterVariant::imm;
   competitors.measurement_variance = options.bank.measurement_variance;
   competitors.all = options.competitors;
   bank.bank.em.most_modes = most_components(options.mixture.selection);

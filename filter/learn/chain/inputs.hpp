@@ -83,9 +83,8 @@ struct CompetitorInputs {
   std::string terms = "auto";  ///< terms of `nonlinear`
   RefineOptions em = {};       ///< how `nonlinear` is learned; its part of the runs is that of all competitors
   OtherLags lags = {};
-  bool noise_by_input = false;                      ///< whether a factor on all noise may depend on state and input
   std::optional<double> measurement_variance = {};  ///< stated R of the linear stage's model
-  bool all = true;  ///< if false, only the baseline and the decision about the noise factor are made
+  bool all = true;                                  ///< if false, only the baseline is learned
 };
 
 /// Inputs of the bank, and of the competitors `one_motion` and `drifting`, which are learned after it.

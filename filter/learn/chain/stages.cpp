@@ -102,22 +102,6 @@ Bank single_filter(const Recording& recording, const OneModel& of, const Competi
   return std::move(baseline.bank);
 }
 
-/// The factor on the competitors' noise, if it has one.
-NoiseFactor noise_factor(const Recording& recording, const LinearStructure& structure, const CompetitorInputs& inputs,
-                         const Tell& tell) {
-  if (!inputs.noise_by_input) return {};
-  const Stopwatch watch;
-  FoundNoiseFactor found = find_noise_factor(recording, structure, inputs.em.folds, inputs.em.seed);
-  if (std::isnan(found.gain)) return {};
-  const std::string gain =
-      std::isnan(found.standard_error)
-          ? fmt::format("gains {:.4f} nats/sample on the runs that chose it", found.gain)
-          : fmt::format("gains {:.4f} +- {:.4f} nats/sample on left-out runs", found.gain, found.standard_error);
-  progress(tell, "noise by input: a factor on all process noise {}: {}, in {:.2f} s", gain,
-           found.factor.empty() ? "not taken" : "taken", watch.seconds());
-  return std::move(found.factor);
-}
-
 /// The terms given in the configuration, even if they do not gain.
 FoundTerms take_stated(const Recording& recording, const LinearStructure& structure, const std::string& terms) {
   constexpr Index enough_rows = 200000;
@@ -129,7 +113,7 @@ FoundTerms take_stated(const Recording& recording, const LinearStructure& struct
 }
 
 std::optional<Bank> nonlinear(const Recording& recording, LinearStructure structure, const CompetitorInputs& inputs,
-                              bool noise_by_input, const Tell& tell) {
+                              const Tell& tell) {
   if (inputs.terms == "none") return {};
   structure.centre.clear();  // terms are functions of the values themselves
   const Stopwatch watch;
@@ -149,9 +133,7 @@ std::optional<Bank> nonlinear(const Recording& recording, LinearStructure struct
     progress(tell, "nonlinear: {}: not taken, in {:.2f} s", gain, watch.seconds());
     return {};
   }
-  RefineOptions em = inputs.em;
-  em.noise_by_input = noise_by_input;
-  Bank bank = learn_nonlinear(recording, found.structure, found.terms, em);
+  Bank bank = learn_nonlinear(recording, found.structure, found.terms, inputs.em);
   progress(tell, "nonlinear: {}: taken with lags {}, {} noise levels, in {:.2f} s", gain, lags_of(found.structure),
            bank.mode_count(), watch.seconds());
   return bank;
@@ -171,10 +153,9 @@ CompetitorsPart learn_competitors(const StageData& data, const WindowFits& windo
   const OneModel linear = one_model(recording, windows, data.motion, inputs.lags.linear);
   CompetitorsPart learned;
   learned.baseline = single_filter(recording, linear, inputs, data.tell);
-  const NoiseFactor factor = noise_factor(recording, linear.structure, inputs, data.tell);
-  learned.noise_only =
-      noise_only_beside(*learned.baseline, inputs.lags.armax.has_value(), recording, linear.structure, factor);
-  if (inputs.all) learned.nonlinear = nonlinear(recording, linear.structure, inputs, !factor.empty(), data.tell);
+  if (!inputs.all) return learned;
+  learned.noise_only = noise_only_beside(*learned.baseline, inputs.lags.armax.has_value(), recording, linear.structure);
+  learned.nonlinear = nonlinear(recording, linear.structure, inputs, data.tell);
   return learned;
 }
 
@@ -182,20 +163,12 @@ namespace {
 
 void tell_refinement(const Refinement& refined, const Tell& tell) {
   for (const RefineCandidate& c : refined.candidates)
-    tell(Level::detail,
-         fmt::format("refine: {:<12} {:>3} modes, Q prior {}: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
-                     "below the best, after {} iterations{}",
-                     c.start, c.modes, c.noise_transitions, c.score, c.loss, c.loss_standard_error, c.iterations,
-                     c.selected ? " (chosen)" : ""));
+    tell(Level::detail, fmt::format("refine: {:<12} {:>3} modes: {:.4f} nats/sample on left-out runs, {:.4f} +- {:.4f} "
+                                    "below the best, after {} iterations{}",
+                                    c.start, c.modes, c.score, c.loss, c.loss_standard_error, c.iterations,
+                                    c.selected ? " (chosen)" : ""));
   const MeasurementStage& R = refined.measurement;
-  if (R.failed_starts > 0)
-    tell(Level::warning, fmt::format("refine: {} of {} searches for R failed{}", R.failed_starts, R.starts,
-                                     R.failed_starts < R.starts ? "; the best of the other searches is used"
-                                                                : ", so R = 0 is not certain"));
-  if (R.starts > 0)
-    progress(tell, "refine: searched for measurement noise from {} starts, in {:.2f} s{}", R.starts, R.seconds,
-             refined.bank.R_standard_error.size() == 0 ? ": found none worth adding" : "");
-  if (!std::isnan(R.score))
+  if (!std::isnan(R.score_before))
     progress(tell, "refine: {} iterations with measurement noise: {:.4f} -> {:.4f} nats/sample on left-out runs",
              R.iterations, R.score_before, R.score);
   if (const SwitchingStage& s = refined.switching; !std::isnan(s.gain))
@@ -207,7 +180,7 @@ void tell_refinement(const Refinement& refined, const Tell& tell) {
 
 Refinement learn_modes(const StageData& data, const Learning& learned, const BankInputs& inputs) {
   const Stopwatch watch;
-  Refinement refined{*learned.baseline, {}, {}, {}, {}};
+  Refinement refined{*learned.baseline};
   if (!inputs.one_model)
     refined = learn_as_asked(data.recording, *learned.windows, *learned.mixture, inputs.bank, learned.baseline->R,
                              inputs.filter, data.motion);
@@ -289,12 +262,9 @@ Learning learned_on(const Learning& learned, const Recording& training, const Ba
     const LinearStructure& structure = anew.baseline->structure;
     anew.baseline->modes.front().model = unpack(structure, fit_global(training, structure).theta);
   }
-  if (learned.noise_only) {
-    const LinearStructure& structure = learned.noise_only->structure;
-    const NoiseFactor factor =
-        learned.noise_only->noise_factor.empty() ? NoiseFactor() : fit_noise_factor(training, structure);
-    anew.noise_only = noise_only_beside(*anew.baseline, inputs.lags.armax.has_value(), training, structure, factor);
-  }
+  if (learned.noise_only)
+    anew.noise_only =
+        noise_only_beside(*anew.baseline, inputs.lags.armax.has_value(), training, learned.noise_only->structure);
   if (learned.drifting)
     anew.drifting = relearn_drifting(*learned.drifting, training, fit_global(training, learned.drifting->structure));
   if (learned.nonlinear) anew.nonlinear = relearn_nonlinear(learned, training, inputs);

@@ -20,8 +20,9 @@ struct StageData {
 ///   (The search's one-standard-error rule is unstable over a few, different runs.) It takes the fewest lags within
 ///   0.001 nats per sample (or 6 nats in all) of the highest score, if it predicts the training runs by 0.02 nats per
 ///   sample better than the constant model, and if they have at most 20,000 transitions.
-/// - Modes, and one motion with switching noise: the result of the search, unless one lag, two lags (with the found
-///   delay or one of one sample) or the lags of `drifting` gain (compare_structures).
+/// - Modes, and one motion with switching noise: the result of the search, unless 1, 2, 3, 4 or 6 equal lags (with the
+///   found delay or one of one sample) or the lags of `drifting` gain (compare_structures). With a noisy sensor, which
+///   lags of exact states imitate, the result of the search.
 FoundStructure search_structure(const Recording& recording, const StructureInputs& inputs, const Tell& tell);
 
 /// The choices of the stages, among the rows of `found` and those that are tested only here, which are added.

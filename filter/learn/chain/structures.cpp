@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <limits>
 #include <utility>
 
@@ -46,16 +47,16 @@ std::size_t position_of(Rows& rows, Index state_lags, Index input_lags, Index de
   return rows.size() - 1;
 }
 
-/// Positions in the table of equal state and input lags, from 1 to `most`, if they were searched, with the delay of one
+/// Positions in the table of these equal state and input lags, if they were searched, with the delay of one
 /// linear motion and the usual one: effects of opposite sign in two modes cancel in one linear model, which may then
 /// prefer a wrong delay. Runs must have enough samples before their first prediction.
-std::vector<std::size_t> positions_of_equal(Rows& rows, const StructureScore& linear, Index most,
-                                            const SearchedLags& searched) {
+std::vector<std::size_t> positions_of_equal(Rows& rows, const StructureScore& linear,
+                                            std::initializer_list<Index> equal, const SearchedLags& searched) {
   std::vector<Index> delays{linear.input_delay};
   if (searched.delay && linear.input_delay != 1) delays.push_back(1);
   std::vector<std::size_t> positions;
   for (const Index delay : delays)
-    for (Index lags = 1; lags <= most; ++lags) {
+    for (const Index lags : equal) {
       const Index state_lags = searched.state ? lags : linear.state_lags,
                   input_lags = searched.input ? lags : linear.input_lags;
       if (searched.most_samples == 0 || std::max(state_lags, delay + input_lags - 1) <= searched.most_samples)
@@ -78,12 +79,12 @@ double drifting_score(const Recording& recording, Index latest, const LinearStru
 /// The row that `drifting` chooses: `exact` unless coefficients drift. Its candidates are then added to the rows.
 std::size_t row_of_drifting(const Recording& recording, const StructureInputs& inputs, const StructureScore& linear,
                             std::size_t exact, Rows& rows) {
-  constexpr Index most_asked_transitions = 20000, most_equal_lags = 8;
+  constexpr Index most_asked_transitions = 20000;
   constexpr double least_drifting_gain = 0.02;  // [nats/sample]
   const Index transitions = recording.transitions(Role::train);
   if (transitions > most_asked_transitions) return exact;
   Rows candidates = rows;
-  positions_of_equal(candidates, linear, most_equal_lags, inputs.searched);
+  positions_of_equal(candidates, linear, {1, 2, 3, 4, 5, 6, 7, 8}, inputs.searched);
   const auto structure = [&](const StructureScore& c) { return structure_of(c, recording, inputs.window); };
   Index latest = 0;
   for (const StructureScore& c : candidates) latest = std::max(latest, structure(c).first_transition());
@@ -115,7 +116,7 @@ std::size_t row_of_drifting(const Recording& recording, const StructureInputs& i
 /// The row that modes, or one motion whose noise switches (`one_theta`), choose among these.
 std::size_t row_of_modes(const Recording& recording, const StructureInputs& inputs,
                          const std::vector<std::size_t>& positions, std::size_t incumbent, bool one_theta, Rows& rows) {
-  if (!inputs.with_modes) return incumbent;
+  if (!inputs.with_modes || positions.size() < 2) return incumbent;
   std::vector<LinearStructure> structures;
   for (const std::size_t at : positions) structures.push_back(structure_of(rows[at], recording, inputs.window));
   const auto at = std::ranges::find(positions, incumbent) - positions.begin();
@@ -129,7 +130,6 @@ std::size_t row_of_modes(const Recording& recording, const StructureInputs& inpu
 }  // namespace
 
 void choose_for_stages(const Recording& recording, const StructureInputs& inputs, FoundStructure& found) {
-  constexpr Index most_equal_lags = 2;
   Rows& rows = found.scores;
   if (rows.empty()) return;
   StructureScore& searched = *std::ranges::find_if(rows, &StructureScore::chosen);
@@ -140,9 +140,10 @@ void choose_for_stages(const Recording& recording, const StructureInputs& inputs
   const std::size_t exact =
       position_of(rows, linear.state_lags + more, linear.input_lags + of_inputs, linear.input_delay);
   const std::size_t drifting = row_of_drifting(recording, inputs, linear, exact, rows);
-  std::vector<std::size_t> positions = positions_of_equal(rows, linear, most_equal_lags, inputs.searched);
+  std::vector<std::size_t> positions{exact};
+  if (!found.noisy_sensor) positions = positions_of_equal(rows, linear, {1, 2, 3, 4, 6}, inputs.searched);
   for (const std::size_t row : {exact, drifting})
-    if (std::ranges::find(positions, row) == positions.end()) positions.push_back(row);
+    if (!found.noisy_sensor && std::ranges::find(positions, row) == positions.end()) positions.push_back(row);
   const std::size_t modes = row_of_modes(recording, inputs, positions, exact, false, rows),
                     one_motion = row_of_modes(recording, inputs, positions, exact, true, rows);
   rows[drifting].drifting = true;
@@ -211,7 +212,8 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   const double rounding = std::numeric_limits<double>::epsilon() * recording.runs.front().states().norm();
   if (!leaves_enough(recording, fit, searched.most_samples) || fit.S.trace() < rounding * rounding) return {};
   // States the answer before stages choose among few lags, which takes most of the time.
-  const StepResponse response = bank_of(recording, fit, std::nullopt).modes.front().response.value;
+  const Bank bank = bank_of(recording, fit, std::nullopt);
+  const StepResponse& response = bank.modes.front().response.value;
   const auto list = [](const Eigen::MatrixXd& of) { return fmt::join(of.data(), of.data() + of.size(), ", "); };
   tell(Level::progress,
        fmt::format("linear model: {} state and {} noise lags{}; gain {:.4g}, 63 % after {:.4g} s", fit.order.state_lags,
@@ -229,6 +231,7 @@ std::optional<FoundStructure> linear_structure_of(const Recording& recording, co
   found.structures = std::ssize(stage.candidates);
   found.noise_lags = fit.order.noise_lags;
   found.differences = fit.order.differences;
+  found.noisy_sensor = !found.differences && has_noisy_sensor(bank.R.diagonal(), bank.noise_variance());
   return found;
 }
 

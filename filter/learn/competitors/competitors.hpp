@@ -1,12 +1,10 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <vector>
 
 #include "filter/learn/refine/refine.hpp"
-#include "ident/base/not_a_number.hpp"
 #include "ident/lag/linear_stage.hpp"
 
 /// The filters that a bank competes with (method: section 6). Each learns from the training runs of a recording, and
@@ -34,17 +32,15 @@ Bank bank_of(const Recording& recording, const ArmaxFit& fit, std::optional<doub
 std::optional<Bank> learn_armax(const Recording& recording, const ArmaxStructure& structure,
                                 std::optional<double> variance);
 
-/// The competitor with switching noise only: Huber's theta, eight noise scales in geometric steps, the most likely
-/// `stay`, and `factor` on all scales. If states are rounded, theta and the scales then maximise the filter's
-/// likelihood, whose R has the rounding.
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                      const NoiseFactor& factor = {});
+/// The competitor with switching noise only: Huber's theta, eight noise scales in geometric steps, and the most likely
+/// `stay`. If states are rounded, theta and the scales then maximise the filter's likelihood, whose R has the rounding.
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R);
 
-/// The same competitor beside a baseline. If that is the linear stage's, whose R is known beside Q, and without a
-/// factor: its theta and R with eight levels of its Q, from a quarter to 32 times (residuals of exact states count R
-/// twice), if these are more likely on the training runs.
+/// The same competitor beside a baseline. If that is the linear stage's, whose R is known beside Q: its theta and R
+/// with eight levels of its Q, from a quarter to 32 times (residuals of exact states count R twice), if these are more
+/// likely on the training runs.
 Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
-                       const LinearStructure& structure, const NoiseFactor& factor);
+                       const LinearStructure& structure);
 
 /// The competitor with one motion, learned like the bank (refine_bank), but with one theta for all modes. It starts
 /// from `most_levels` noise scales and fewer, down to one, and from the noises and transitions of `rival`, the bank
@@ -58,25 +54,6 @@ Refinement learn_one_motion(const Recording& recording, const WindowFits& frame,
 /// lags of the terms.
 Bank learn_nonlinear(const Recording& recording, const LinearStructure& structure, const MotionTerms& terms,
                      const RefineOptions& em);
-
-/// The most likely factor on the noise of one motion (method: section 2a, item 5): of Student t residuals about Huber's
-/// theta, with scale exp(g'z / 2). z holds logarithms of the newest states, the newest inputs, their changes (if the
-/// structure has the previous input), and each state's forecast contribution from inputs. Empty if all residuals are
-/// zero.
-NoiseFactor fit_noise_factor(const Recording& recording, const LinearStructure& structure,
-                             const MotionTerms& terms = {});
-
-/// The factor, if training runs that were left out gain by it.
-struct FoundNoiseFactor {
-  NoiseFactor factor;                    ///< empty: rejected
-  double gain = not_a_number;            ///< on left-out runs, or on all if these reject it at once [nats/sample]
-  double standard_error = not_a_number;  ///< of the gain over the left-out runs; NaN if no run was left out
-};
-
-/// Compares one motion whose noise switches between four levels with and without the factor, by the rule for additions
-/// (left_out/rule.hpp), on at most 20,000 transitions drawn by the seed. Rounded samples are not tested.
-FoundNoiseFactor find_noise_factor(const Recording& recording, const LinearStructure& structure, Eigen::Index folds,
-                                   std::uint64_t seed);
 
 /// The settings of a drifting model to choose from (method: section 6). Of settings with equal scores, the earlier one
 /// is preferred. q, p0 and floor ascend, leak descends.

@@ -52,12 +52,11 @@ double choose_stay(Bank& bank, const Recording& recording) {
 /// One motion with this number of noise scales. theta is Huber's, or that of least squares if states are rounded: then
 /// many values repeat, Huber's scale is zero, and x[k+1] = x[k] looks exact.
 Bank with_noise_scales(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                       Index levels, const NoiseFactor& factor) {
+                       Index levels) {
   Bank bank = bank_frame(recording, structure, R);
-  bank.noise_factor = factor;
-  Transitions transitions = stack_training(recording, structure);
+  bank.motion.assign(static_cast<std::size_t>(levels), 0);
+  const Transitions transitions = stack_training(recording, structure);
   require_transitions(transitions.count() > 0);
-  divide_by_noise(factor, structure, transitions);
   RobustRegression fit;
   if (recording.quantum.size() > 0) {
     const GlobalModel global = fit_global(recording, structure);
@@ -80,18 +79,17 @@ Bank with_noise_scales(const Recording& recording, const LinearStructure& struct
 
 /// Starting banks with one theta: the first has `most` noise levels, the next three quarters of that, and so on.
 std::vector<Bank> level_starts(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                               Index most, const NoiseFactor& factor) {
+                               Index most) {
   std::vector<Bank> starts;
   for (Index levels = most; levels >= 1; levels = static_cast<Index>(modes_kept * static_cast<double>(levels)))
-    starts.push_back(with_noise_scales(recording, structure, R, levels, factor));
+    starts.push_back(with_noise_scales(recording, structure, R, levels));
   return starts;
 }
 
 }  // namespace
 
-Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R,
-                      const NoiseFactor& factor) {
-  const Bank bank = with_noise_scales(recording, structure, R, noise_only_levels, factor);
+Bank learn_noise_only(const Recording& recording, const LinearStructure& structure, const Eigen::MatrixXd& R) {
+  const Bank bank = with_noise_scales(recording, structure, R, noise_only_levels);
   if (!bank.is_quantised()) return bank;
   // The residuals of rounded values include the rounding, and so does R of the filter: its likelihood decides.
   FreeParameters free;
@@ -99,13 +97,13 @@ Bank learn_noise_only(const Recording& recording, const LinearStructure& structu
   free.theta_unit = bank.modes.front().standard_error.unaryExpr(
       [](double error) { return std::isnan(error) ? 1.0 : positive_variance(error); });
   free.transition = false;
-  return maximise_likelihood({recording, FilterOptions{}, std::nullopt, true}, free, bank, {60, 1e-6}).bank;
+  return maximise_likelihood({recording, FilterOptions{}, std::nullopt}, free, bank, {60, 1e-6}).bank;
 }
 
 Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recording& recording,
-                       const LinearStructure& structure, const NoiseFactor& factor) {
-  Bank exact = learn_noise_only(recording, structure, baseline.R, factor);
-  if (!of_linear_stage || !factor.empty()) return exact;
+                       const LinearStructure& structure) {
+  Bank exact = learn_noise_only(recording, structure, baseline.R);
+  if (!of_linear_stage) return exact;
   constexpr double lowest = 0.25, step = 2.0, least_share_of_R = 0.01;
   Bank bank = baseline;
   const Index n = baseline.structure.states;
@@ -114,6 +112,7 @@ Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recordi
   mode.weight = 1.0 / static_cast<double>(noise_only_levels);
   const Eigen::VectorXd Q = baseline.noise_variance().cwiseMax(least_share_of_R * baseline.R.diagonal());
   bank.modes.clear();
+  bank.motion.assign(noise_only_levels, 0);
   for (Index j = 0; j < noise_only_levels; ++j) {
     mode.Q.diagonal().head(n) = lowest * std::pow(step, static_cast<double>(j)) * Q;
     bank.modes.push_back(mode);
@@ -125,17 +124,16 @@ Bank noise_only_beside(const Bank& baseline, bool of_linear_stage, const Recordi
 Refinement learn_one_motion(const Recording& recording, const WindowFits& frame, const Bank& rival,
                             const Eigen::MatrixXd& R, Index most_levels, const BankOptions& options) {
   RefineOptions em = options.em;
-  em.one_theta = true;
   em.state_dependent_transition = options.transition == TransitionSource::logit;
   em.restarts = 0;  // random stretches differ in theta, but this model has one theta
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const LinearStructure& structure = frame.structure;
-  const NoiseFactor factor = em.noise_by_input ? fit_noise_factor(recording, structure) : NoiseFactor();
-  std::vector<Bank> starts = level_starts(recording, structure, stated_or(options, R), most_levels, factor);
+  std::vector<Bank> starts = level_starts(recording, structure, stated_or(options, R), most_levels);
   if (rival.mode_count() > 1) {
     Bank start = starts.front();
     const Index n = structure.states, p = structure.parameters();
     start.modes.clear();
+    start.motion.assign(rival.modes.size(), 0);
     for (const Mode& mode : rival.modes)
       start.modes.push_back(make_mode(structure, frame.global.theta, mode.Q.topLeftCorner(n, n),
                                       Eigen::MatrixXd::Zero(p, p), Eigen::VectorXd::Zero(p), mode.weight));
@@ -173,8 +171,7 @@ Recording with_known_terms(const Recording& recording, const LinearStructure& s,
 }
 
 /// The bank of `s` with terms, from one whose inputs are those of with_known_terms.
-Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s, const MotionTerms& terms,
-                const NoiseFactor& factor) {
+Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s, const MotionTerms& terms) {
   const Index before = s.dimension() + s.acting_inputs(), wide = known.structure.regressors();
   std::vector<Index> linear(static_cast<std::size_t>(before));
   std::iota(linear.begin(), linear.end(), Index{0});
@@ -201,7 +198,6 @@ Bank with_terms(Bank known, const Recording& recording, const LinearStructure& s
   known.model = s.lagged() ? "varx" : "linear";
   known.structure = s;
   known.terms = terms;
-  known.noise_factor = factor;
   known.C = frame.C;
   known.state_names = frame.state_names;
   known.input_names = frame.input_names;
@@ -236,6 +232,7 @@ void add_wide_level(Bank& bank) {
   Eigen::VectorXd initial(K + 1);
   initial << (1.0 - share) * bank.initial_probability, share;
   bank.modes.push_back(std::move(wide));
+  bank.motion.push_back(0);
   bank.transition = TransitionMatrix(T);
   bank.initial_probability = initial;
   bank.transition_standard_error.resize(0, 0);
@@ -253,21 +250,15 @@ Bank learn_nonlinear(const Recording& recording, const LinearStructure& structur
   frame.structure = {structure.states, std::ssize(known.inputs), structure.intercept, structure.state_lags};
   frame.global = fit_global(known, frame.structure);
   RefineOptions em = options;
-  em.one_theta = true;
   em.state_dependent_transition = false;
   em.restarts = 0;
   em.measurement_noise = false;
-  em.noise_by_input = false;  // the starts have the factor; one without the left-out runs needs the terms
   em.max_iterations = std::min(em.max_iterations, most_em_iterations);
-  const NoiseFactor factor = options.noise_by_input ? fit_noise_factor(recording, structure, terms) : NoiseFactor();
-  NoiseFactor of_known = factor;  // which does not depend on the terms, further inputs of the starts
-  if (const Index rows = factor.directions.rows(); rows > 0)
-    of_known.directions.conservativeResizeLike(Eigen::MatrixXd::Zero(rows, factor.directions.cols() + terms.count()));
-  const std::vector<Bank> starts = level_starts(
-      known, frame.structure, Eigen::MatrixXd::Zero(structure.states, structure.states), most_levels, of_known);
+  const std::vector<Bank> starts =
+      level_starts(known, frame.structure, Eigen::MatrixXd::Zero(structure.states, structure.states), most_levels);
   Bank bank = refine_bank(known, frame, starts, em, FilterOptions{}).bank;
   add_wide_level(bank);
-  return with_terms(std::move(bank), recording, structure, terms, factor);
+  return with_terms(std::move(bank), recording, structure, terms);
 }
 
 }  // namespace modebank

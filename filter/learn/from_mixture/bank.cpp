@@ -7,9 +7,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/from_mixture/pooled_modes.hpp"
 #include "filter/learn/left_out/folds.hpp"
+#include "filter/learn/switching/regression.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "modebank/base/error.hpp"
 
@@ -71,7 +71,8 @@ std::vector<Index> usable(const LinearStructure& structure, const std::vector<Mo
   for (Index k = 0; k < std::ssize(modes); ++k) {
     const double radius = spectral_radius(unpack(structure, modes[k].theta));
     const bool starved = modes[k].effective_transitions < static_cast<double>(structure.regressors() + 1);
-    if (screens && (starved || !(radius <= 1.0 + spectral_radius_slack)))
+    const bool unstable = !(radius <= 1.0 + spectral_radius_slack) && !(weights(k) >= least_unstable_share);
+    if (screens && (starved || unstable))
       screened.push_back({k, weights(k), radius, starved ? "starved" : "unstable"});
     else
       kept.push_back(k);
@@ -93,13 +94,6 @@ Eigen::MatrixXd parameter_covariance_of(const WindowFits& fits, const MixtureRes
   const Eigen::MatrixXd parameters = fits.parameters(Eigen::all, used);
   const Eigen::MatrixXd offsets = parameters.colwise() - parameters * weights;
   return offsets * weights.asDiagonal() * offsets.transpose();
-}
-
-/// Score of the chosen fit with measurement noise; NaN if no run was left out.
-double left_out_score(const Refinement& refined) {
-  if (!std::isnan(refined.measurement.score)) return refined.measurement.score;
-  const auto selected = [](const RefineCandidate& row) { return row.selected; };
-  return std::find_if(refined.candidates.begin(), refined.candidates.end(), selected)->score;
 }
 
 }  // namespace
@@ -233,14 +227,7 @@ Refinement learn_refined_bank(const Recording& recording, const WindowFits& fits
   em.state_dependent_transition = options.transition == TransitionSource::logit;
   em.measurement_noise = em.measurement_noise && !options.measurement_variance;
   const std::optional<Recording> part = learning_part(recording, em.transitions, em.seed);
-  const Recording& learned = part ? *part : recording;
-  Refinement refined = refine_bank(learned, fits, starts, em, filter);
-  if (em.noise_by_input) {  // modes may describe more of the noise than the factor describes
-    const double without = left_out_score(refined);
-    for (Bank& start : starts) start.noise_factor = fit_noise_factor(learned, fits.structure);
-    Refinement with_factor = refine_bank(learned, fits, starts, em, filter);
-    if (left_out_score(with_factor) >= without) refined = std::move(with_factor);
-  }
+  Refinement refined = refine_bank(part ? *part : recording, fits, starts, em, filter);
   if (part) refined.learned_transitions = part->transitions(Role::train);
   return refined;
 }
@@ -260,7 +247,7 @@ Refinement learn_as_asked(const Recording& recording, const WindowFits& fits, co
     throw std::invalid_argument("refine = em needs linear modes; expected refine = none or auto for the motion model " +
                                 fits.model);
   Refinement learned = refined ? learn_refined_bank(recording, fits, mixture, options, R, filter.value())
-                               : Refinement{learn_bank(recording, fits, mixture, options, R, motion), {}, {}, {}, {}};
+                               : Refinement{learn_bank(recording, fits, mixture, options, R, motion)};
   if (motion) return learned;
   clear_unidentifiable(learned.bank, fits.global.covariance);
   clear_unidentifiable(learned.start, fits.global.covariance);

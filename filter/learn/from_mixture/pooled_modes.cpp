@@ -52,8 +52,8 @@ Index nearest_window(Index transition, const std::vector<Index>& windows, const 
 /// The rows of one run, count x K. `windows`: its windows by increasing start.
 Eigen::MatrixXd memberships_of_run(Index count, std::vector<Index> windows, const WindowFits& fits,
                                    const MixtureResult& mixture) {
-  const Index first = windows.empty() ? 0 : windows.front(), last = windows.empty() ? 0 : windows.back();
-  const Eigen::MatrixXd gamma = mixture.responsibilities.block(first, last - first + 1);
+  const Index first = windows.empty() ? 0 : windows.front(), end = windows.empty() ? 0 : windows.back() + 1;
+  const Eigen::MatrixXd gamma = mixture.responsibilities.block(first, end - first);
   std::erase_if(windows, [&](Index i) { return std::isnan(gamma(0, i - first)); });  // not clustered
   if (windows.empty()) return mixture.mixture.weights.transpose().replicate(count, 1);
   Eigen::MatrixXd sum = Eigen::MatrixXd::Zero(gamma.rows(), count);

@@ -1,7 +1,6 @@
 #include "filter/learn/from_mixture/training_transitions.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <iterator>
 #include <stdexcept>
 #include <string>
@@ -17,27 +16,11 @@ void check_structure(const Recording& recording, const LinearStructure& s) {
                               std::to_string(recording.input_count()));
 }
 
-Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows) {
-  if (factor.empty()) return {};
-  Eigen::VectorXd logs(rows.count());
-  const Index n = structure.dimension(), m = structure.acting_inputs();
-  const Eigen::RowVectorXd centre = structure.acting_centre();
-  for (Index k = 0; k < rows.count(); ++k) {
-    const Eigen::RowVectorXd phi = rows.regressors.row(k).head(n + m) + centre;
-    logs(k) = factor.log_at(phi.head(n), phi.segment(n, m));
-    const double root = std::exp(-0.5 * logs(k));
-    rows.regressors.row(k) *= root;
-    rows.increments.row(k) *= root;
-  }
-  return logs;
-}
-
 void require_transitions(bool any) {
   if (!any) throw DataError("no training run has a usable transition (two successive samples without missing values)");
 }
 
-TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
-                                                const NoiseFactor& factor) {
+TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure) {
   check_structure(recording, structure);
   const Index N = recording.transitions(Role::train);
   const Transitions rows{Eigen::MatrixXd(N, structure.regressors()), Eigen::MatrixXd(N, structure.states)};
@@ -52,7 +35,6 @@ TrainingTransitions gather_training_transitions(const Recording& recording, cons
     all.data.increments.middleRows(first, run.transitions()) = of_run.increments;
     first += run.transitions();
   }
-  all.log_noise_factor = divide_by_noise(factor, structure, all.data);
   for (Index k = 0; k < N; ++k) {
     if (all.data.regressors.row(k).allFinite() && all.data.increments.row(k).allFinite()) continue;
     all.data.regressors.row(k).setZero();

@@ -23,8 +23,6 @@ struct TrainingTransitions {
   Eigen::VectorXd usable;     ///< N, 1 where the row is usable, otherwise 0
   std::vector<RunRows> runs;  ///< training runs, in the order of the recording
 
-  Eigen::VectorXd log_noise_factor = {};  ///< N, result of divide_by_noise
-
   Index count() const { return data.count(); }
 };
 
@@ -35,13 +33,7 @@ void check_structure(const Recording& recording, const LinearStructure& structur
 void require_transitions(bool any);
 
 /// Collects the training transitions. Throws the errors of check_structure, and DataError without a usable transition.
-/// `factor`: divide_by_noise.
-TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure,
-                                                const NoiseFactor& factor = {});
-
-/// Divides every row by the square root of its noise factor, so that all have equal noise. Returns the factors'
-/// logarithms, N; empty without a factor.
-Eigen::VectorXd divide_by_noise(const NoiseFactor& factor, const LinearStructure& structure, Transitions& rows);
+TrainingTransitions gather_training_transitions(const Recording& recording, const LinearStructure& structure);
 
 /// Sums over the rows of each run. `rows`: N values.
 Eigen::VectorXd sum_by_run(const TrainingTransitions& transitions, const Eigen::VectorXd& rows);

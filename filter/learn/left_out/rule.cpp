@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 
 #include "ident/base/clustered_error.hpp"
 
@@ -22,13 +24,12 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 }
 
 double least_worth(double samples) {
-  constexpr double proposals = 7.0, taken_by_chance = 0.05;
+  constexpr double proposals = 6.0, taken_by_chance = 0.05;
   return std::max(least_gain, std::log(proposals / taken_by_chance) / samples);
 }
 
-bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples, double most_error) {
-  return std::isfinite(gain.mean) &&
-         gain.mean > std::max(std::min(gain.standard_error, most_error), least_worth(samples.sum()));
+bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples) {
+  return std::isfinite(gain.mean) && gain.mean > std::max(gain.standard_error, least_worth(samples.sum()));
 }
 
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
@@ -36,17 +37,29 @@ std::size_t best_candidate(const std::vector<LeftOutScores>& candidates) {
   return static_cast<std::size_t>(std::ranges::max_element(candidates, less) - candidates.begin());
 }
 
-std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples) {
-  constexpr double most_loss = 0.02;
-  const std::size_t best = best_candidate(candidates);
-  std::size_t chosen = best;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    const PairedLoss loss = paired_loss(candidates[best].log_likelihood, candidates[i].log_likelihood, samples);
-    if (!std::isfinite(loss.mean) || is_worth_it(loss, samples, most_loss)) continue;
-    const Eigen::Index fewer = candidates[chosen].modes - candidates[i].modes;
-    if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[chosen]))) chosen = i;
+std::size_t fewest_motions_as_good(const std::vector<LeftOutScores>& candidates, double limit) {
+  constexpr Eigen::Index fewest_runs = 4;
+  constexpr double gain_of_run = 6.0;
+  std::map<Eigen::Index, std::size_t> best_of;  // by number of motions
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    if (const auto [at, first] = best_of.emplace(candidates[i].motions, i);
+        !first && total(candidates[i]) > total(candidates[at->second]))
+      at->second = i;
+  const double highest = total(candidates[best_candidate(candidates)]);
+  const auto is_good = [&](const auto& of) { return total(candidates[of.second]) >= highest - limit; };
+  auto chosen = std::ranges::find_if(best_of, is_good);
+  for (auto more = std::next(chosen); more != best_of.end(); ++more) {
+    const Eigen::ArrayXd gain = candidates[more->second].log_likelihood - candidates[chosen->second].log_likelihood;
+    if (gain.size() >= fewest_runs && 5 * (gain >= gain_of_run).count() >= 4 * gain.size()) chosen = more;
   }
-  return chosen;
+  std::size_t result = chosen->second;
+  const double least = total(candidates[result]) - limit;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (candidates[i].motions != chosen->first || !(total(candidates[i]) >= least)) continue;
+    const Eigen::Index fewer = candidates[result].modes - candidates[i].modes;
+    if (fewer > 0 || (fewer == 0 && total(candidates[i]) > total(candidates[result]))) result = i;
+  }
+  return result;
 }
 
 }  // namespace modebank

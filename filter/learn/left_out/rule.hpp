@@ -11,6 +11,7 @@ namespace modebank {
 struct LeftOutScores {
   Eigen::Index modes = 0;
   Eigen::VectorXd log_likelihood;  ///< of each left-out run [nats]
+  Eigen::Index motions = 0;
 };
 
 /// Difference of two candidates' scores, sample by sample on the same runs.
@@ -26,26 +27,24 @@ PairedLoss paired_loss(const Eigen::VectorXd& better, const Eigen::VectorXd& wor
 /// Nats per sample. Smaller gains do not hold on other runs: other seeds change held-out scores by 0.03 to 0.07.
 inline constexpr double least_gain = 1e-3;
 
-/// Smallest gain per sample for an addition to a model: at least least_gain, and log(7 / 0.05) nats over all samples.
-/// By chance left-out runs gain that much with probability 0.05 / 7 at most, because a likelihood ratio has expectation
-/// one (Markov's inequality). One configuration has at most seven proposals: number of modes, prior, measurement noise,
-/// noise by input, transitions by state, a fit over a horizon.
+/// Smallest gain per sample for an addition to a model: at least least_gain, and log(6 / 0.05) nats over all samples.
+/// By chance left-out runs gain that much with probability 0.05 / 6 at most, because a likelihood ratio has expectation
+/// one (Markov's inequality). One configuration has at most six proposals: number of modes, two priors, measurement
+/// noise, transitions by state, a fit over a horizon.
 double least_worth(double samples);
 
-/// The rule for accepting every addition to a model. The `gain` on left-out runs must exceed least_worth and its
-/// standard error by run, which is capped at `most_error`. `samples`: of each left-out run. Other rules are worse: the
+/// The rule for accepting every other addition to a model. The `gain` on left-out runs must exceed least_worth and its
+/// standard error by run. `samples`: of each left-out run. Other rules are worse: the
 /// standard error alone accepts additions to three of ten systems that have none; a t-test over six runs rejects drift
 /// worth 0.06 nats in four of five systems.
-bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples,
-                 double most_error = std::numeric_limits<double>::infinity());
+bool is_worth_it(const PairedLoss& gain, const Eigen::VectorXd& samples);
 
 /// The candidate with the highest sum of scores; the first one if several are equal.
 std::size_t best_candidate(const std::vector<LeftOutScores>& candidates);
 
-/// The candidate with the fewest modes whose loss against the best one is within one standard error (Breiman et al.
-/// 1984, section 3.4.3), which is capped at 0.02 nats per sample: with few runs it is unreliable, and modes with a
-/// fifth of the usual gain should not be missed. If several have this number of modes, the one with the highest score.
-/// `samples`: number of samples of each left-out run.
-std::size_t fewest_modes_as_good(const std::vector<LeftOutScores>& candidates, const Eigen::VectorXd& samples);
+/// The candidate with the fewest motions whose sum of scores is within `limit` nats of the best one; of these with the
+/// fewest modes within the limit of the best of them; of these with the highest score. A rare motion counts, too, if at
+/// least four runs, and four fifths of them, each gain six nats by it.
+std::size_t fewest_motions_as_good(const std::vector<LeftOutScores>& candidates, double limit);
 
 }  // namespace modebank

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <memory>
 #include <numeric>
+#include <unsupported/Eigen/KroneckerProduct>
 #include <utility>
 
 #include "filter/judge/evaluate.hpp"
@@ -138,24 +139,26 @@ std::pair<Index, double> bfgs(std::unique_ptr<NearbyTarget> nearby, double small
 }
 
 const double* set_process_noise(const double* at, const FreeParameters& free, Bank& bank) {
-  const Index n = bank.structure.states;
-  for (Mode& mode : bank.modes) {
-    if (free.Q_by_one_factor) {
-      mode.Q *= bounded_exp(*at);
-      continue;
-    }
+  const Index n = bank.structure.states, L = bank.noise_levels, K = bank.mode_count();
+  std::vector<double> factor(L, 1.0);  // of each level's Q, relative to the first one's
+  for (Index l = 1; l < L; ++l) factor[l] = bank.modes[l].Q(0, 0) / bank.modes[0].Q(0, 0);
+  for (Index first = 0; first < K; first += L) {
     Eigen::MatrixXd M = Eigen::MatrixXd::Zero(n, n);
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a, ++at) M(a, b) = a == b ? bounded_exp(*at) : *at;
-    const Eigen::MatrixXd L = Cholesky(mode.Q.topLeftCorner(n, n)).L() * M;
-    mode.Q.topLeftCorner(n, n).noalias() = L * L.transpose();
-    if (free.least_Q.size() > 0) mode.Q.diagonal().head(n) = mode.Q.diagonal().head(n).cwiseMax(free.least_Q);
+    auto Q = bank.modes[first].Q.topLeftCorner(n, n);
+    const Eigen::MatrixXd root = Cholesky(Q).L() * M;
+    Q.noalias() = root * root.transpose();
+    if (free.least_Q.size() > 0) Q.diagonal() = Q.diagonal().cwiseMax(free.least_Q);
   }
-  return free.Q_by_one_factor ? at + 1 : at;
+  for (Index l = 1; l < L; ++l, ++at)
+    for (Index first = 0; first < K; first += L)
+      bank.modes[first + l].Q = factor[l] * bounded_exp(*at) * bank.modes[first].Q;
+  return at;
 }
 
-void set_transition(const double* at, Bank& bank) {
-  Eigen::MatrixXd T = bank.transition.matrix();
+/// The matrix with rows moved from `at`, which goes on.
+Eigen::MatrixXd moved_rows(Eigen::MatrixXd T, const double*& at) {
   for (Index i = 0; i < T.rows(); ++i) {
     Index largest = 0;
     T.row(i).maxCoeff(&largest);
@@ -163,7 +166,13 @@ void set_transition(const double* at, Bank& bank) {
       if (j != largest) T(i, j) *= bounded_exp(*at++);
     T.row(i) /= T.row(i).sum();
   }
-  bank.transition = TransitionMatrix(T);
+  return T;
+}
+
+void set_transition(const double* at, Bank& bank) {
+  const auto [of_motions, of_levels] = chains_of(bank.transition.matrix(), bank.noise_levels);
+  const Eigen::MatrixXd T = moved_rows(of_motions, at);
+  bank.transition = TransitionMatrix(Eigen::kroneckerProduct(T, moved_rows(of_levels, at)).eval());
 }
 
 /// The free parameters of a bank, in the order of BankCoordinates::jacobian.
@@ -186,9 +195,9 @@ BankCoordinates::BankCoordinates(Bank origin, FreeParameters free)
     : origin_(std::move(origin)), free_(std::move(free)) {}
 
 Index BankCoordinates::size() const {
-  const Index K = origin_.mode_count(), n = origin_.structure.states;
-  const Index noise = free_.Q_by_one_factor ? 1 : K * n * (n + 1) / 2;
-  return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? K * (K - 1) : 0);
+  const Index n = origin_.structure.states, L = origin_.noise_levels, M = origin_.mode_count() / L;
+  const Index noise = M * n * (n + 1) / 2 + L - 1, switches = M * (M - 1) + L * (L - 1);
+  return free_.theta_unit.size() + noise + std::ssize(free_.R) + (free_.transition ? switches : 0);
 }
 
 Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
@@ -196,7 +205,7 @@ Bank BankCoordinates::decode(const Eigen::VectorXd& at) const {
   const Index p = free_.theta_unit.rows(), thetas = free_.theta_unit.cols();
   const Eigen::Map<const Eigen::MatrixXd> z(at.data(), p, thetas);
   for (Index j = 0; thetas > 0 && j < bank.mode_count(); ++j) {
-    const Index of = thetas == 1 ? 0 : j;
+    const Index of = origin_.motion_of(j);
     const Eigen::VectorXd theta = origin_.theta(j) + free_.theta_unit.col(of).cwiseProduct(z.col(of));
     bank.modes[j].model = unpack(bank.structure, theta);
   }
@@ -231,7 +240,7 @@ double LikelihoodTarget::value(const Bank& bank) const {
 }
 
 double LikelihoodTarget::log_prior(const Bank& bank) const {
-  return prior ? modebank::log_prior(*prior, one_theta, switching_model(bank)) : 0.0;
+  return prior ? modebank::log_prior(*prior, switching_model(bank)) : 0.0;
 }
 
 LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const FreeParameters& free, const Bank& start,
@@ -243,18 +252,14 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
   Eigen::VectorXd steps;
   while (true) {
     const BankCoordinates around(best.bank, free);
-    const bool first = steps.size() == 0;
-    if (first) steps.setConstant(around.size(), first_step);
+    if (steps.size() == 0) steps.setConstant(around.size(), first_step);
     auto nearby = std::make_unique<NearbyTarget>(target, around, best.value, steps);
     const double gain = nearby->set_units();
     if (std::isnan(gain)) return best;
-    if (first && best.value + gain <= limits.least_value)
-      best.end = MeasuredFit::none;
-    else if (gain <= small_gain)
+    if (gain <= small_gain)
       best.end = MeasuredFit::converged;
     else if (best.iterations >= limits.max_iterations)
       best.end = MeasuredFit::iteration_limit;
-    best.rose = best.rose || best.end == MeasuredFit::converged;
     if (best.end != MeasuredFit::stalled) return best;
     steps = nearby->steps();
     Bank end;
@@ -264,7 +269,7 @@ LikelihoodMaximum maximise_likelihood(const LikelihoodTarget& target, const Free
     if (!(value > best.value)) return best;
     // A new metric costs two filter passes per coordinate; a gradient costs three passes in total.
     if (expected <= small_gain) best.end = MeasuredFit::converged;
-    best = {std::move(end), value, best.iterations, best.end, true};
+    best = {std::move(end), value, best.iterations, best.end};
     if (best.end == MeasuredFit::converged) return best;
   }
 }

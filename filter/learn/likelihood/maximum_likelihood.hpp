@@ -18,8 +18,7 @@ inline constexpr Eigen::Index most_lags_beside_R = 8;
 
 /// Which parameters of a bank are estimated beside Q, and their units.
 struct FreeParameters {
-  Eigen::MatrixXd theta_unit = {};   ///< p x K, or p x 1 for one theta of all modes; positive; empty if theta is known
-  bool Q_by_one_factor = false;      ///< one common factor on every Q, instead of separate Q
+  Eigen::MatrixXd theta_unit = {};   ///< p x number of motions, positive; empty if theta is known
   Eigen::VectorXd least_Q = {};      ///< n, lower bounds of every Q's diagonal [state unit^2]; empty if there are none
   std::vector<Eigen::Index> R = {};  ///< outputs whose variance is estimated
   Eigen::VectorXd least_R = {};      ///< n_y, lower bounds of R's diagonal [state unit^2]
@@ -29,9 +28,11 @@ struct FreeParameters {
 /// Unconstrained coordinates of all estimated parameters, relative to one bank, the origin:
 ///   theta_j       = theta0_j + unit z (one coordinate per parameter);
 ///   Q_j           = L0 M M' L0' with L0 L0' = Q0_j, M lower triangular, exp(z) on its diagonal (log-Cholesky: Pinheiro
-///                   & Bates 1996), its diagonal at least least_Q; or Q0_j exp(z) with one z for all modes;
+///                   & Bates 1996), its diagonal at least least_Q; with noise levels for the first mode of a motion,
+///                   and Q_ml = exp(z_l) Q0_ml / Q0_m0 Q_m0 for the others;
 ///   R_ii          = least_R_i + max(R0_ii - least_R_i, 0) exp(z);
-///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry.
+///   row i of T    proportional to T0_ij exp(z_j), z = 0 for its largest entry; with noise levels, of both its factors.
+/// Modes of one motion have one theta.
 class BankCoordinates {
  public:
   BankCoordinates(Bank origin, FreeParameters free);
@@ -59,7 +60,6 @@ struct LikelihoodTarget {
   const Recording& recording;
   FilterOptions filter;                 ///< variant `imm` if there are several modes
   std::optional<SwitchingPrior> prior;  ///< if empty, the target is the likelihood without a prior
-  bool one_theta = false;               ///< whether the prior on theta counts only once
 
   /// Minus infinity for a bank with non-finite numbers.
   double value(const Bank& bank) const;
@@ -70,16 +70,13 @@ struct LikelihoodTarget {
 struct AscentLimits {
   Index max_iterations = 100;
   double tolerance = 1e-6;  ///< nats per transition; the search has converged if the expected gain is at most this
-  /// No search unless a Newton step from the start is expected to rise above this value.
-  double least_value = -std::numeric_limits<double>::infinity();
 };
 
 struct LikelihoodMaximum {
   Bank bank;
   double value = 0.0;  ///< value of the target at the result; never below the value at the start
   Index iterations = 0;
-  MeasuredFit end = MeasuredFit::stalled;  ///< none: no search, because of least_value
-  bool rose = false;                       ///< true if the search converged at the start or moved to a better point
+  MeasuredFit end = MeasuredFit::stalled;
 };
 
 /// Finds the target's maximum near `start`, by BFGS (ceres::GradientProblemSolver) over BankCoordinates in units of the
@@ -102,7 +99,7 @@ Bank with_complete_errors(const TrainingTransitions& transitions, const ModePost
 
 /// All parameters of a bank as free parameters, with theta in units of the bank's standard errors. `estimate_R`:
 /// includes R of all outputs, at least `least_R` (n_y). The weights of a logit are known.
-FreeParameters all_parameters(const Bank& bank, bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R);
+FreeParameters all_parameters(const Bank& bank, bool estimate_R, const Eigen::VectorXd& least_R);
 
 /// The bank with standard errors from the inverse of the observed information for all parameters together. So they
 /// include the uncertainty of the modes and, for R > 0, of the states. If the information is singular, the errors that

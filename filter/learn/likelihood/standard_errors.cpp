@@ -52,7 +52,7 @@ Eigen::MatrixXd prior_information(const BankCoordinates& around, const Switching
   Eigen::VectorXd of_noise = Eigen::VectorXd::Zero(J.rows());  // inverse variances of Q and T
   Index at = 0;
   for (Index j = 0; j < K; ++j) {
-    if (j < free.theta_unit.cols())
+    if (p > 0 && (j == 0 || bank.motion_of(j) != bank.motion_of(j - 1)))
       information += J.middleRows(at, p).transpose() * prior.information * J.middleRows(at, p);
     at += p;
     const Eigen::MatrixXd& Q = bank.modes[j].Q;
@@ -95,8 +95,7 @@ Eigen::MatrixXd observed_information(const LikelihoodTarget& target, const BankC
   if (is_exact(around)) {
     // The densities of the switching regression equal those of the filter for R = 0, but cost far less, especially with
     // many lags.
-    const TrainingTransitions transitions =
-        gather_training_transitions(recording, around.origin().structure, around.origin().noise_factor);
+    const TrainingTransitions transitions = gather_training_transitions(recording, around.origin().structure);
     sum = outer_products(around, steps, transitions.count(), [&](const Bank& bank) {
       return predictive_log_densities(transitions, switching_model(bank));
     });
@@ -135,11 +134,11 @@ Bank with_complete_errors(const TrainingTransitions& transitions, const ModePost
   return bank;
 }
 
-FreeParameters all_parameters(const Bank& bank, bool one_theta, bool estimate_R, const Eigen::VectorXd& least_R) {
+FreeParameters all_parameters(const Bank& bank, bool estimate_R, const Eigen::VectorXd& least_R) {
   FreeParameters free;
-  free.theta_unit.resize(bank.structure.parameters(), one_theta ? 1 : bank.mode_count());
-  for (Index j = 0; j < free.theta_unit.cols(); ++j)
-    free.theta_unit.col(j) = bank.modes[j].standard_error.unaryExpr([](double error) {
+  free.theta_unit.resize(bank.structure.parameters(), bank.motion_of(bank.mode_count() - 1) + 1);
+  for (Index j = 0; j < bank.mode_count(); ++j)
+    free.theta_unit.col(bank.motion_of(j)) = bank.modes[j].standard_error.unaryExpr([](double error) {
       // NaN: the data do not determine this parameter
       return std::isnan(error) ? 1.0 : std::max(error, std::sqrt(std::numeric_limits<double>::min()));
     });

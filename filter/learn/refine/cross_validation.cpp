@@ -9,8 +9,8 @@
 #include <utility>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/refine/refine.hpp"
+#include "filter/step/motions.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/base/work_counter.hpp"
 #include "ident/data/stretch.hpp"
@@ -51,7 +51,8 @@ Eigen::MatrixXd ask(const ValidationSplit& split, const LinearStructure& structu
     said.col(trial_count) = sum_by_run(asked, asked.usable);
     tbb::parallel_for(Index{0}, trial_count, [&](Index t) {
       SwitchingFit fit{start_from_stretches(learned, prior, trial_modes[t], length, seed, trial_starts[t])};
-      iterate(learned, prior, {one_theta, trial_tolerance}, most_trial_iterations, fit);
+      if (one_theta) fit.model.motion.assign(static_cast<std::size_t>(trial_modes[t]), 0);
+      iterate(learned, prior, {trial_tolerance}, most_trial_iterations, fit);
       said.col(t) = sum_by_run(asked, predictive_log_densities(asked, fit.model));
     });
   } catch (const DataError&) {
@@ -63,12 +64,12 @@ Eigen::MatrixXd ask(const ValidationSplit& split, const LinearStructure& structu
 
 SwitchingFit fit_training_runs(const RefineInput& in, const BankCandidate& candidate) {
   const TrainingTransitions& transitions = in.all.transitions;
-  const SwitchingPrior prior = in.prior(candidate, in.all);
+  const SwitchingPrior prior = in.prior(in.all, candidate.logit_width);
   SwitchingFit fit{candidate.start};
   iterate(transitions, prior, in.em(), candidate.iterations, fit);
-  fit.screened = in.all.frame.screened;
+  fit.screened = in.frame.screened;
   while (in.options.screen) {
-    const auto dropped = drop_worst_mode(transitions, fit.posterior, in.options.one_theta, fit.model);
+    const auto dropped = drop_worst_mode(transitions, fit.posterior, fit.model);
     if (!dropped) break;
     fit.screened.push_back(*dropped);
     SwitchingFit rest{std::move(fit.model)};
@@ -84,17 +85,13 @@ CrossValidation::CrossValidation(const RefineInput& in)
   std::vector<double> samples;
   for (const ValidationSplit& split : splits_) {
     for (const Trajectory& run : split.left_out.runs) samples.push_back(static_cast<double>(run.transitions()));
-    Bank frame = in.all.frame;
-    if (in.options.noise_by_input && !frame.noise_factor.empty())
-      frame.noise_factor = fit_noise_factor(split.training, frame.structure);
+    const Bank& frame = in.frame;
     try {
-      if (frame.R.isZero(0.0))
-        left_out_.push_back(gather_training_transitions(split.left_out, frame.structure, frame.noise_factor));
+      if (frame.R.isZero(0.0)) left_out_.push_back(gather_training_transitions(split.left_out, frame.structure));
     } catch (const DataError&) {  // no complete transition
     }
-    TrainingTransitions transitions = gather_training_transitions(split.training, frame.structure, frame.noise_factor);
-    GlobalModel global = fit_global(split.training, frame.structure);
-    learning_.push_back({split.training, std::move(frame), std::move(transitions), std::move(global)});
+    learning_.push_back({split.training, gather_training_transitions(split.training, frame.structure),
+                         fit_global(split.training, frame.structure)});
   }
   if (left_out_.size() < splits_.size()) left_out_.clear();
   samples_ = Eigen::VectorXd::Map(samples.data(), std::ssize(samples));
@@ -109,25 +106,47 @@ void CrossValidation::consider(const std::vector<BankCandidate>& candidates) {
     scores_.push_back(fits_.back().scores);
     counter.add();
   }
-  if (possible()) chosen_ = fewest_modes_as_good(scores_, samples_);
+  choose();
+}
+
+void CrossValidation::consider(const std::string& name, LearnedBank learned) {
+  constexpr Index iterations_of_split = 20;  // enough to forget the left-out runs
+  constexpr double share_of_R = 0.1;         // an R of all runs would tell of those left out
+  Bank start = learned.bank;
+  if (in_.estimates_R()) start.R.diagonal() = in_.single.R.cwiseMax(share_of_R * learned.bank.R.diagonal());
+  Fit fit{{name, switching_model(learned.bank), 0.0, learned.iterations, fits_.size()}};
+  fit.of_splits.resize(splits_.size());
+  tbb::parallel_for(std::size_t{0}, splits_.size(), [&](std::size_t s) {
+    fit.of_splits[s] = maximise_measured(in_, learning_[s], start, iterations_of_split).bank;
+  });
+  fit.learned = std::move(learned);
+  fit.scores = scores(fit.of_splits);
+  scores_.push_back(fit.scores);
+  fits_.push_back(std::move(fit));
+  choose();
+}
+
+void CrossValidation::choose() {
+  if (possible()) chosen_ = fewest_motions_as_good(scores_, least_nats(samples_.sum(), in_.single.response_samples));
 }
 
 Fit CrossValidation::best_iterations(BankCandidate candidate) const {
   std::vector<SwitchingFit> fits(learning_.size(), SwitchingFit{candidate.start});
   std::vector<SwitchingPrior> priors;
-  for (const LearningRuns& runs : learning_) priors.push_back(in_.prior(candidate, runs));
+  for (const LearningRuns& runs : learning_) priors.push_back(in_.prior(runs, candidate.logit_width));
   Fit best{std::move(candidate)};
   const Index limit = in_.options.max_iterations;
   Index done = 0;
+  int falls = 0;
   bool converged = false;
-  for (int falls = 0; done < limit && falls < most_falls && !converged;) {
+  do {
     const auto next = std::upper_bound(checkpoints.begin(), checkpoints.end(), done);
     const Index checkpoint = next == checkpoints.end() ? limit : std::min(*next, limit);
     tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t s) {
       iterate(learning_[s].transitions, priors[s], in_.em(), checkpoint - done, fits[s]);
     });
     std::vector<Bank> banks;
-    for (std::size_t s = 0; s < fits.size(); ++s) banks.push_back(with_modes(learning_[s].frame, fits[s].model));
+    for (std::size_t s = 0; s < fits.size(); ++s) banks.push_back(with_modes(in_.frame, fits[s].model));
     LeftOutScores of_banks = left_out_.empty() ? scores(banks) : exact_scores(fits);
     const double gain = mean_score(of_banks) - mean_score(best.scores);
     falls = done > 0 && gain < -least_gain ? falls + 1 : 0;
@@ -138,7 +157,7 @@ Fit CrossValidation::best_iterations(BankCandidate candidate) const {
     }
     done = checkpoint;
     converged = std::all_of(fits.begin(), fits.end(), [](const auto& fit) { return fit.converged; });
-  }
+  } while (done < limit && falls < most_falls && !converged);
   return best;
 }
 
@@ -147,7 +166,7 @@ std::vector<RefineCandidate> CrossValidation::table(std::size_t selected) const 
   std::vector<RefineCandidate> rows;
   for (const Fit& fit : fits_) {
     const BankCandidate& of = fit.candidate;
-    rows.push_back({of.name, of.start.modes(), of.noise_transitions, of.iterations});
+    rows.push_back({of.name, of.start.modes(), of.iterations});
     if (!possible()) continue;
     const PairedLoss loss = paired_loss(fits_[best].scores.log_likelihood, fit.scores.log_likelihood, samples_);
     rows.back().score = mean_score(fit.scores);
@@ -171,7 +190,9 @@ std::vector<Fit> CrossValidation::best_of_starts() const {
 }
 
 LeftOutScores CrossValidation::exact_scores(const std::vector<SwitchingFit>& fits) const {
-  LeftOutScores result{fits.front().model.modes(), Eigen::VectorXd(samples_.size())};
+  const SwitchingRegression& model = fits.front().model;
+  LeftOutScores result{model.modes(), Eigen::VectorXd(samples_.size()),
+                       model.motion.empty() ? model.modes() : model.motion.back() + 1};
   std::vector<Index> first{0};  // left-out run of every split
   for (const TrainingTransitions& rows : left_out_) first.push_back(first.back() + std::ssize(rows.runs));
   tbb::parallel_for(std::size_t{0}, fits.size(), [&](std::size_t s) {
@@ -185,7 +206,7 @@ LeftOutScores CrossValidation::scores(const std::vector<Bank>& banks) const {
   std::vector<std::pair<const Bank*, const Trajectory*>> runs;
   for (std::size_t s = 0; s < splits_.size(); ++s)
     for (const Trajectory& run : splits_[s].left_out.runs) runs.emplace_back(&banks[s], &run);
-  LeftOutScores result{banks.front().mode_count(), Eigen::VectorXd(std::ssize(runs))};
+  LeftOutScores result{banks.front().mode_count(), Eigen::VectorXd(std::ssize(runs)), motion_count(banks.front())};
   tbb::parallel_for(std::size_t{0}, runs.size(), [&](std::size_t i) {
     result.log_likelihood(static_cast<Index>(i)) = log_likelihood(*runs[i].first, *runs[i].second, in_.filter);
   });
@@ -232,7 +253,7 @@ StructuresOfModes compare_structures(const Recording& all, const std::vector<Lin
   const PairedLoss loss = paired_loss(best.log_likelihood, candidates[incumbent].log_likelihood, transitions);
   const bool fewer_lags = best.modes < candidates[incumbent].modes;
   if (loss.mean >= least_structure_gain && (fewer_lags || loss.mean >= loss.standard_error))
-    result.chosen = fewest_modes_as_good(candidates, transitions);
+    result.chosen = fewest_motions_as_good(candidates, transitions.sum() * least_worth(transitions.sum()));
   return result;
 }
 

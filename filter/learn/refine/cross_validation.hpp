@@ -13,11 +13,10 @@
 
 namespace modebank {
 
-/// Start of a fit, its priors, and its number of iterations.
+/// Start of a fit, and its number of iterations.
 struct BankCandidate {
   std::string name;
   SwitchingRegression start;
-  double noise_transitions = 0.0;
   double logit_width = 0.0;  ///< 0 for constant T
   Index iterations = 0;
   std::size_t row = 0;  ///< row in the table
@@ -26,9 +25,14 @@ struct BankCandidate {
 /// Runs to learn from: all training runs, or those that a split leaves.
 struct LearningRuns {
   const Recording& recording;
-  Bank frame;  ///< the parts of the bank that are not refined, with a noise factor of these runs
   TrainingTransitions transitions;
   GlobalModel global;
+};
+
+/// What modes take from one linear motion with measurement noise.
+struct SingleModel {
+  Eigen::VectorXd R;              ///< n_y
+  double response_samples = 1.0;  ///< step/motions.hpp
 };
 
 /// Inputs of the refinement of a bank.
@@ -37,13 +41,27 @@ struct RefineInput {
   const RefineOptions& options;
   const FilterOptions& filter;
   LearningRuns all;
+  Bank frame;  ///< the parts of the bank that are not refined
+  SingleModel single = {};
+  double Q_transitions = usual_Q_transitions;  ///< of the prior
+  bool unknown_states = false;                 ///< whether measurement noise is not small beside Q
 
-  SwitchingPrior prior(const BankCandidate& of, const LearningRuns& runs) const {
-    return switching_prior(runs.transitions, runs.global, fits.prior_sd, of.noise_transitions, of.logit_width);
+  SwitchingPrior prior(const LearningRuns& runs, double logit_width = 0.0) const {
+    return switching_prior(runs.transitions, runs.global, fits.prior_sd, Q_transitions, logit_width);
   }
-  SwitchingEmOptions em() const { return {options.one_theta, options.tolerance}; }
+  SwitchingEmOptions em() const { return {options.tolerance}; }
+  bool estimates_R() const { return unknown_states && options.measurement_noise; }
   /// The smallest R in refinement, n_y: a negligible share of the global residual variance.
   Eigen::VectorXd least_R() const { return 1e-9 * fits.global.noise_variance(); }
+};
+
+/// A bank that was learned from some runs.
+struct LearnedBank {
+  Bank bank = {};
+  SwitchingPrior prior = {};    ///< with which it is most likely
+  double log_likelihood = 0.0;  ///< without the prior
+  Index iterations = 0;
+  MeasuredFit end = MeasuredFit::none;  ///< of the maximisation with unknown states; none: states are exact
 };
 
 /// The model accepted so far, and its fit to the training part of every split of the cross-validation.
@@ -51,9 +69,9 @@ struct Fit {
   BankCandidate candidate;  ///< with the number of iterations that scores best on left-out runs
   LeftOutScores scores = {};
   std::vector<Bank> of_splits = {};  ///< the fit without the left-out runs of each split; empty if no run is left out
-  Bank bank = {};                    ///< set after expectation-maximisation on all training runs, like the rest
-  SwitchingPrior prior = {};
-  bool R_estimated = false;
+  LearnedBank learned = {};          ///< from all training runs; of exact states at the end
+
+  bool exact() const { return learned.end == MeasuredFit::none; }
 };
 
 /// Makes the candidate's iterations on all training runs. Then removes unusable modes one by one, each followed by a
@@ -66,14 +84,18 @@ class CrossValidation {
  public:
   explicit CrossValidation(const RefineInput& in);
 
-  /// Tries the candidates. Then chooses among all so far (fewest_modes_as_good); the first if no run can be left out.
+  /// Tries the candidates. Then chooses among all so far (fewest_motions_as_good); the first if no run can be left out.
   void consider(const std::vector<BankCandidate>& candidates);
+  /// Tries a bank that was learned with unknown states: its likelihood is maximised further on each split. Some run
+  /// must be left out.
+  void consider(const std::string& name, LearnedBank learned);
   /// The fits of every split from one start, after the number of iterations that scores best.
   Fit best_iterations(BankCandidate candidate) const;
 
   bool possible() const { return !splits_.empty(); }  ///< whether any run can be left out
   const std::vector<ValidationSplit>& splits() const { return splits_; }
   const std::vector<LearningRuns>& learning() const { return learning_; }  ///< the data of each split for fits
+  const Fit& last() const { return fits_.back(); }
   const Fit& chosen() const { return fits_[chosen_]; }
   const Eigen::VectorXd& samples() const { return samples_; }  ///< of each left-out run
   std::vector<RefineCandidate> table(std::size_t selected) const;
@@ -95,6 +117,7 @@ class CrossValidation {
   std::vector<LeftOutScores> scores_;
   std::size_t chosen_ = 0;
 
+  void choose();
   LeftOutScores exact_scores(const std::vector<SwitchingFit>& fits) const;
 };
 
@@ -105,30 +128,23 @@ class CrossValidation {
 /// is_worth_it rejects the gain over constant T.
 std::optional<Fit> choose_logit(const RefineInput& in, const CrossValidation& validation, SwitchingStage& stage);
 
-struct MeasurementNoise {
-  std::optional<Bank> bank;   ///< empty if R does not gain, or if every start failed
-  SwitchingPrior prior = {};  ///< the prior with which the bank is most likely
-  Index failed_starts = 0;    ///< whose likelihood is not finite, or which no step raised
-  Index iterations = 0;       ///< of theta, Q, R and T together
-  MeasuredFit end = MeasuredFit::none;
-};
+/// The bank with the R of the single model, if R is estimated, and R taken out of Q.
+Bank with_R_out_of_Q(const RefineInput& in, Bank bank);
 
-/// The bank whose theta, Q, R (diagonal) and T together maximise the filter's likelihood of these runs. The search
-/// moves R and one factor on every Q first. If they gain nothing, theta moves, too: with the theta of exact states,
-/// which takes in the noise, R = 0 may be most likely. Empty unless the search gains more than least_gain nats per
-/// sample over the bank. `exact`: the prior of exact states.
-MeasurementNoise find_measurement_noise(const RefineInput& in, const LearningRuns& runs, const SwitchingPrior& exact,
-                                        const Bank& bank);
+/// The bank of these runs with unknown states, from `start`; after at most so many iterations.
+LearnedBank maximise_measured(const RefineInput& in, const LearningRuns& runs, const Bank& start, Index iterations);
 
-/// Whether at least half of the banks have a tenth of this R (traces).
-bool mostly_have(const std::vector<Bank>& banks, const Eigen::MatrixXd& R);
+/// Tries up to `most` motions times 1, 2 and 4 noise levels, at most options.most_modes in all, until another motion
+/// gains less than the limit on left-out runs. Starts: the likeliest modes from random stretches, each motion of a
+/// smaller bank split in two (half or twice the response time, 1.5 times the gain or a part of it), each level split in
+/// a quiet and a loud one. The likeliest after the maximisation stays.
+void consider_motions(const RefineInput& in, Index most, CrossValidation& validation);
 
-/// Continues the fit with unknown states if R is not negligible.
-/// - A given R, or that of rounding: theta, Q and T maximise the filter's likelihood.
-/// - R is searched (find_measurement_noise), for rounded states beside the rounding. With more than eight state lags or
-///   a noise factor, it is not.
-/// Either is taken unless left-out runs, scored by fits to the other runs, lose more than least_gain, and R only if the
-/// splits mostly_have it. `fit`: with exact states.
+/// Gives the closest motions of the chosen free chain one theta, as long as the bank with fewer motions is chosen.
+void consider_ties(const RefineInput& in, CrossValidation& validation);
+
+/// Continues a fit with exact states, with unknown ones, if measurement noise is not small or R is given, unless
+/// left-out runs, scored by fits to the other runs, lose more than least_gain.
 Fit fit_with_measurement_noise(const RefineInput& in, const CrossValidation& validation, Fit fit,
                                MeasurementStage& stage);
 

@@ -8,8 +8,11 @@
 #include <stdexcept>
 #include <utility>
 
+#include "filter/judge/evaluate.hpp"
+#include "filter/learn/competitors/competitors.hpp"
 #include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
+#include "filter/step/motions.hpp"
 #include "ident/base/not_a_number.hpp"
 #include "ident/fit/global_model.hpp"
 #include "ident/fit/horizon_fit.hpp"
@@ -17,51 +20,44 @@
 namespace modebank {
 namespace {
 
-// also tried for the best start: a quarter of the usual weight of the prior on Q, and four times it
-constexpr std::array<double, 2> other_Q_transitions{1.0, 16.0};
-constexpr double Q_transitions_unvalidated = 1.0;  // if no run can be left out; one transition is unit information
+constexpr Index most_motions = 4;
 
 /// The starts: banks of the mixture, and banks from random stretches of the runs, with the number of modes of the
 /// mixture's first bank and, if requested, larger numbers.
-std::vector<BankCandidate> all_starts(const RefineInput& in, const std::vector<Bank>& banks, double Q_transitions) {
+std::vector<BankCandidate> all_starts(const RefineInput& in, const std::vector<Bank>& banks) {
   std::vector<BankCandidate> starts;
-  for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank), Q_transitions});
-  const SwitchingPrior prior = in.prior(starts.front(), in.all);
+  for (const Bank& bank : banks) starts.push_back({"mixture", switching_model(bank)});
+  const SwitchingPrior prior = in.prior(in.all);
   const Index fewest = banks.front().mode_count();
   Index modes = std::max(in.options.most_modes, fewest);
   while (modes > 1) {  // all starts with one mode end in the same maximum
     for (Index i = 0; i < in.options.restarts; ++i)
       starts.push_back({fmt::format("stretches {}", i + 1),
-                        start_from_stretches(in.all.transitions, prior, modes, in.fits.length, in.options.seed, i),
-                        Q_transitions});
+                        start_from_stretches(in.all.transitions, prior, modes, in.fits.length, in.options.seed, i)});
     if (modes == fewest) break;
     modes = std::max(static_cast<Index>(modes_kept * static_cast<double>(modes)), fewest);
   }
   return starts;
 }
 
-/// Chooses the start and the number of iterations first, then the strength of the prior on Q.
-CrossValidation cross_validate(const RefineInput& in, const std::vector<Bank>& banks) {
+/// Chooses the start and the number of iterations, then motions and ties.
+CrossValidation cross_validate(RefineInput& in, const std::vector<Bank>& banks) {
   CrossValidation validation(in);
-  validation.consider(all_starts(in, banks, validation.possible() ? usual_Q_transitions : Q_transitions_unvalidated));
+  if (!validation.possible()) in.Q_transitions = 1.0;  // unit information
+  validation.consider(all_starts(in, banks));
   if (!validation.possible()) return validation;
-  std::vector<BankCandidate> others;
-  for (const double Q_transitions : other_Q_transitions) {
-    others.push_back(validation.chosen().candidate);
-    others.back().noise_transitions = Q_transitions;
-  }
-  validation.consider(others);
+  const bool one_motion = !banks.front().motion.empty();
+  if (in.unknown_states || !one_motion) consider_motions(in, one_motion ? 1 : most_motions, validation);
+  consider_ties(in, validation);
   return validation;
 }
 
-/// The fit as a bank, without standard errors. The weight of a mode is its share of the transitions.
-Bank bank_of(const RefineInput& in, const SwitchingFit& fit) {
-  Bank bank = with_modes(in.all.frame, fit.model);
-  bank.screened = fit.screened;
-  const Eigen::VectorXd transitions =
-      (fit.posterior.probability.transpose() * in.all.transitions.usable).cwiseMax(std::numeric_limits<double>::min());
-  for (Index j = 0; j < transitions.size(); ++j) bank.modes[j].weight = transitions(j) / transitions.sum();
-  return bank;
+SingleModel single_model(const Recording& recording, const Bank& frame) {
+  const LinearStructure& s = frame.structure;
+  const ArmaxOrder order{false, s.state_lags, s.input_lags, s.state_lags, s.intercept};
+  const std::optional<Bank> single = learn_armax(recording, {order, s.input_delay.by_input(s.inputs)}, std::nullopt);
+  if (!single) return {frame.R.diagonal()};
+  return {single->R.diagonal().cwiseMax(frame.R.diagonal()), response_samples(*single)};
 }
 
 /// The bank with this theta in all modes. Q and T maximise the likelihood of the runs.
@@ -73,13 +69,11 @@ Bank with_theta(const Recording& recording, const RefineOptions& options, const 
   }
   bank.R_standard_error.resize(0, 0);
   bank.transition_standard_error.resize(0, 0);
-  const SwitchingPrior prior =
-      switching_prior(gather_training_transitions(recording, bank.structure, bank.noise_factor),
-                      fit_global(recording, bank.structure), {}, 1.0);
+  const SwitchingPrior prior = switching_prior(gather_training_transitions(recording, bank.structure),
+                                               fit_global(recording, bank.structure), {}, 1.0);
   FreeParameters free;
   free.transition = bank.mode_count() > 1;
-  return maximise_likelihood({recording, {}, prior, true}, free, bank, {options.max_iterations, options.tolerance})
-      .bank;
+  return maximise_likelihood({recording, {}, prior}, free, bank, {options.max_iterations, options.tolerance}).bank;
 }
 
 /// Summed squares of the errors of a free run after `measured` samples, n.
@@ -89,6 +83,19 @@ Eigen::VectorXd free_run_squares(const Bank& bank, const Eigen::VectorXd& theta,
   if (run.transitions() <= origin) return Eigen::VectorXd::Zero(bank.structure.states);
   const Eigen::MatrixXd errors = errors_ahead(bank.structure, theta, run, origin, run.transitions());
   return run.state.rightCols(errors.cols()).array().isNaN().select(0.0, errors).rowwise().squaredNorm();
+}
+
+/// The bank of the fit with standard errors, and with weights, the filter's mean probabilities.
+Bank with_errors(const RefineInput& in, const Fit& fit) {
+  Bank bank = fit.learned.bank;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(bank.mode_count());
+  for (const Trajectory& run : in.all.recording.runs)
+    if (run.role == Role::train) sum += evaluate_run(bank, run, {}).mode_probability.rowwise().sum();
+  for (Index j = 0; j < sum.size(); ++j) bank.modes[j].weight = sum(j) / sum.sum();
+  const ModePosterior posterior = smooth_modes(in.all.transitions, switching_model(bank));
+  bank = with_complete_errors(in.all.transitions, posterior, fit.learned.prior, std::move(bank));
+  return with_standard_errors({in.all.recording, {}, fit.learned.prior},
+                              all_parameters(bank, !fit.exact() && in.estimates_R(), in.least_R()), bank);
 }
 
 }  // namespace
@@ -103,12 +110,16 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   // R of a start is not kept: the fit treats states as measured exactly, so R is already included in Q. Only the
   // variance of rounding stays.
   if (options.measurement_noise) frame.R = frame.rounding_variance().asDiagonal();
-  const RefineInput in{
-      fits,
-      options,
-      filter,
-      {recording, frame, gather_training_transitions(recording, frame.structure, frame.noise_factor), fits.global}};
-
+  RefineInput in{
+      fits, options, filter, {recording, gather_training_transitions(recording, frame.structure), fits.global}, frame};
+  if (options.measurement_noise || !frame.R.isZero(0.0)) {
+    in.single = single_model(recording, frame);
+    // Many lags can replace R, and gradients of the likelihood ignore that transitions depend on the state.
+    in.unknown_states =
+        frame.structure.state_lags <= most_lags_beside_R && !options.state_dependent_transition &&
+        filter.variant == FilterVariant::imm &&
+        (!options.measurement_noise || has_noisy_sensor(in.single.R, fits.global.noise_variance() - in.single.R));
+  }
   const CrossValidation validation = cross_validate(in, banks);
   Refinement result;
   result.start = banks.front();
@@ -116,16 +127,17 @@ Refinement refine_bank(const Recording& recording, const WindowFits& fits, const
   if (options.state_dependent_transition)
     if (std::optional<Fit> with_logit = choose_logit(in, validation, result.switching)) chosen = std::move(*with_logit);
   result.candidates = validation.table(chosen.candidate.row);
-  SwitchingFit fit = fit_training_runs(in, chosen.candidate);
-  if (Eigen::MatrixXd& weights = fit.model.logit.weights; weights.size() > 0)
-    weights.rowwise() -= weights.colwise().mean().eval();  // does not change probabilities
-  result.objective = fit.objective;
-  chosen.prior = in.prior(chosen.candidate, in.all);
-  chosen.bank = bank_of(in, fit);
+  if (chosen.exact()) {
+    SwitchingFit fit = fit_training_runs(in, chosen.candidate);
+    if (Eigen::MatrixXd& weights = fit.model.logit.weights; weights.size() > 0)
+      weights.rowwise() -= weights.colwise().mean().eval();  // does not change probabilities
+    result.objective = fit.objective;
+    chosen.learned.prior = in.prior(in.all, chosen.candidate.logit_width);
+    chosen.learned.bank = with_modes(in.frame, fit.model);
+    chosen.learned.bank.screened = fit.screened;
+  }
   chosen = fit_with_measurement_noise(in, validation, std::move(chosen), result.measurement);
-  const Bank bank = with_complete_errors(in.all.transitions, fit.posterior, chosen.prior, chosen.bank);
-  result.bank = with_standard_errors({recording, {}, chosen.prior, options.one_theta},
-                                     all_parameters(bank, options.one_theta, chosen.R_estimated, in.least_R()), bank);
+  result.bank = with_errors(in, chosen);
   result.of_splits = std::move(chosen.of_splits);
   return result;
 }

@@ -17,28 +17,37 @@ namespace modebank {
 /// Number of modes of a smaller start, as a share of the next larger one.
 inline constexpr double modes_kept = 0.75;
 
+/// Whether the variance of a sensor's noise is above a tenth of the process noise: then theta of exact states is
+/// biased.
+inline bool has_noisy_sensor(const Eigen::VectorXd& R, const Eigen::VectorXd& Q) {
+  return (R.array() > 0.1 * Q.array()).any();
+}
+
 struct Refinement {
   Bank bank;
-  Bank start;                               ///< the bank of the mixture
-  std::vector<RefineCandidate> candidates;  ///< best number of iterations for each start
-  std::vector<double> objective;            ///< penalised log-likelihood before each iteration
-  MeasurementStage measurement;
+  Bank start = {};                               ///< the bank of the mixture
+  std::vector<RefineCandidate> candidates = {};  ///< best number of iterations for each start
+  std::vector<double> objective = {};            ///< penalised log-likelihood before each iteration
+  MeasurementStage measurement = {};
   SwitchingStage switching = {};
   std::vector<Bank> of_splits = {};      ///< without the left-out runs of each split (validation_splits); empty if none
   Eigen::Index learned_transitions = 0;  ///< number of transitions learned from (left_out/folds.hpp); 0 means all
 };
 
-/// Expectation-maximisation of the switching model (regression.hpp), starting from banks of mixtures. The score of
-/// left-out training runs decides the start and the number of iterations (fewest_modes_as_good). Held-out runs are
-/// never used. The last fit uses all training runs. Unstable, starved and duplicate modes are then removed and listed.
+/// Expectation-maximisation of the switching model (regression.hpp), starting from banks of mixtures and from random
+/// stretches, then motions times noise levels (consider_motions), then ties of motions. The score of left-out training
+/// runs decides the start and the number of iterations (fewest_motions_as_good). Held-out runs are never used. The last
+/// fit uses all training runs. Starved and duplicate modes, and unstable ones that are hardly used, are then removed
+/// and listed. Starts whose modes are one motion stay so.
 ///
 /// The prior: theta is normal about the global model, with prior_sd of the windows or else worth one transition (unit
-/// information: Kass & Wasserman 1995). Q has 1, 4 or 16 additional transitions of the global residual covariance,
-/// chosen by cross-validation. Every count of T and of first modes has 0.1 added.
+/// information: Kass & Wasserman 1995). Q has four additional transitions of the global residual covariance. Every
+/// count of T and of first modes has 0.1 added.
 ///
-/// States first count as measured exactly: if R > 0, Q contains the measurement noise and theta is biased. Then theta,
-/// Q, R and T are estimated together by the filter's likelihood and kept if the result is better
-/// (fit_with_measurement_noise). Throws std::invalid_argument for a motion model.
+/// States first count as measured exactly. If R of one linear motion with measurement noise (ident/lag/armax), or that
+/// of rounding, is above a tenth of Q, or R is stated, motions are maximised and scored by the filter with R, which is
+/// estimated with them unless it is stated (fit_with_measurement_noise). Throws std::invalid_argument for a motion
+/// model.
 Refinement refine_bank(const Recording& recording, const WindowFits& fits, const std::vector<Bank>& starts,
                        const RefineOptions& options, const FilterOptions& filter);
 

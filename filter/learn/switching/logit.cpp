@@ -10,6 +10,7 @@
 
 #include "filter/learn/refine/cross_validation.hpp"
 #include "filter/learn/switching/regression.hpp"
+#include "filter/step/motions.hpp"
 #include "ident/base/linalg.hpp"
 
 namespace modebank {
@@ -104,7 +105,7 @@ struct LogitFit {
 LogitFit gone_on(const RefineInput& in, BankCandidate candidate) {
   candidate.logit_width = first_width;
   SwitchingFit fit{std::move(candidate.start)};
-  iterate(in.all.transitions, in.prior(candidate, in.all), in.em(), in.options.max_iterations, fit);
+  iterate(in.all.transitions, in.prior(in.all, first_width), in.em(), in.options.max_iterations, fit);
   candidate.start = std::move(fit.model);
   return {std::move(candidate), fit.posterior.log_likelihood};
 }
@@ -118,6 +119,7 @@ std::map<Index, LogitFit, std::greater<>> fits_by_size(const RefineInput& in, co
     BankCandidate candidate = constant[f].candidate;
     candidate.start = fit_training_runs(in, candidate).model;
     if (candidate.start.modes() == 1) return;
+    candidate.start.noise_levels = 1;
     candidate.start.logit = no_effect(in.all.transitions, candidate.start.modes());
     all[f] = gone_on(in, std::move(candidate));
   });
@@ -169,7 +171,7 @@ std::optional<Fit> choose_logit(const RefineInput& in, const CrossValidation& va
     scores.push_back(sizes.back().scores);
   }
   if (sizes.empty()) return std::nullopt;
-  Fit best = sizes[fewest_modes_as_good(scores, validation.samples())];
+  Fit best = sizes[fewest_motions_as_good(scores, least_nats(validation.samples().sum(), in.single.response_samples))];
   BankCandidate wider = best.candidate;
   wider.logit_width = other_width;
   Fit other = validation.best_iterations(wider);

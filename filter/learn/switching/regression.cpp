@@ -36,9 +36,7 @@ Eigen::MatrixXd densities_of_modes(const TrainingTransitions& transitions, const
                               transitions.data.regressors * coefficients(transitions.structure, model.theta.col(j));
     const Eigen::MatrixXd whitened = Cholesky(Q).whiten(Eigen::MatrixXd(r.transpose()));
     const double constant = n * log_two_pi + log_determinant(Q);
-    Eigen::ArrayXd of_mode = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
-    if (transitions.log_noise_factor.size() > 0)  // density of the rows before they were divided by the noise factor
-      of_mode -= 0.5 * n * transitions.log_noise_factor.array();
+    const Eigen::ArrayXd of_mode = -0.5 * (whitened.colwise().squaredNorm().array() + constant).transpose();
     log_density.col(j) = (transitions.usable.array() > 0.0).select(of_mode, 0.0);
   });
   return log_density;
@@ -137,6 +135,30 @@ std::optional<Eigen::VectorXd> best_theta(const std::vector<RegressionSums>& sum
   return prior.mean + (factor.definite() ? factor.solve(pull) : solve_semidefinite(information, pull));
 }
 
+/// Raises the likelihood over Q, given each mode's scatter of residuals and its weight. With noise levels, Q_ml = f_l
+/// V_m: V given f, then f given V.
+void raise_noise(const std::vector<Eigen::MatrixXd>& scatter, const Eigen::VectorXd& weight,
+                 SwitchingRegression& model) {
+  const Index K = model.modes(), L = model.noise_levels;
+  Eigen::VectorXd factor = Eigen::VectorXd::Ones(L), distance = Eigen::VectorXd::Zero(L), size = distance;
+  for (Index l = 1; l < L; ++l) factor(l) = model.Q[l](0, 0) / model.Q[0](0, 0);
+  for (Index first = 0; first < K; first += L) {
+    Eigen::MatrixXd V = Eigen::MatrixXd::Zero(scatter[first].rows(), scatter[first].cols());
+    for (Index l = 0; l < L; ++l) V += scatter[first + l] / factor(l);
+    V /= weight.segment(first, L).sum();
+    for (Index l = 0; l < L; ++l) {
+      model.Q[first + l] = V;
+      if (L > 1) distance(l) += solve_semidefinite(V, scatter[first + l]).trace();
+      size(l) += static_cast<double>(V.rows()) * weight(first + l);
+    }
+  }
+  for (Index j = 0; L > 1 && j < K; ++j) model.Q[j] *= distance(j % L) / size(j % L);
+}
+
+Eigen::MatrixXd rows_sum_to_one(const Eigen::MatrixXd& counts) {
+  return counts.array().colwise() / counts.array().rowwise().sum();
+}
+
 /// Standard deviations of the logit's weights, d: `width` over the regressors' standard deviations. The weight of a
 /// regressor that is constant up to rounding has no effect.
 Eigen::VectorXd weight_deviations(const TrainingTransitions& transitions, double width) {
@@ -154,7 +176,9 @@ SwitchingRegression switching_model(const Bank& bank) {
                             {},
                             bank.transition.matrix(),
                             bank.initial_probability,
-                            bank.transition_logit};
+                            bank.transition_logit,
+                            bank.motion,
+                            bank.noise_levels};
   for (Index j = 0; j < bank.mode_count(); ++j) {
     model.theta.col(j) = bank.theta(j);
     model.Q.push_back(bank.modes[j].Q.topLeftCorner(n, n));
@@ -169,6 +193,8 @@ Bank with_modes(Bank bank, const SwitchingRegression& model) {
   for (Index j = 0; j < K; ++j)
     bank.modes.push_back(make_mode(bank.structure, model.theta.col(j), model.Q[j], Eigen::MatrixXd::Zero(p, p),
                                    Eigen::VectorXd::Constant(p, not_a_number), 1.0 / static_cast<double>(K)));
+  bank.motion = model.motion;
+  bank.noise_levels = model.noise_levels;
   bank.transition = TransitionMatrix(model.transition);
   bank.transition_logit = model.logit;
   if (!model.logit.empty()) bank.transition_logit.reference += bank.structure.acting_centre();
@@ -232,9 +258,23 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
   return prior;
 }
 
-double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model) {
-  const Eigen::MatrixXd difference = model.theta.leftCols(one_theta ? 1 : model.modes()).colwise() - prior.mean;
-  double sum = -0.5 * difference.cwiseProduct(prior.information * difference).sum();
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> chains_of(const Eigen::MatrixXd& T, Index noise_levels) {
+  const Index L = noise_levels, M = T.rows() / L;
+  Eigen::MatrixXd of_motions = Eigen::MatrixXd::Zero(M, M), of_levels = Eigen::MatrixXd::Zero(L, L);
+  for (Index i = 0; i < T.rows(); ++i)
+    for (Index j = 0; j < T.cols(); ++j) {
+      of_motions(i / L, j / L) += T(i, j);
+      of_levels(i % L, j % L) += T(i, j);
+    }
+  return {rows_sum_to_one(of_motions), rows_sum_to_one(of_levels)};
+}
+
+double log_prior(const SwitchingPrior& prior, const SwitchingRegression& model) {
+  double sum = 0.0;
+  for (Index first = 0; first < model.modes(); first = model.end_of_motion(first)) {
+    const Eigen::VectorXd difference = model.theta.col(first) - prior.mean;
+    sum -= 0.5 * difference.dot(prior.information * difference);
+  }
   for (const Eigen::MatrixXd& Q : model.Q) {
     const std::optional<Eigen::MatrixXd> inverse = definite_inverse(Q);
     if (!inverse) return -std::numeric_limits<double>::infinity();
@@ -251,25 +291,33 @@ SwitchingRegression maximise(const TrainingTransitions& transitions, const ModeP
                              const SwitchingPrior& prior, const SwitchingEmOptions& options,
                              SwitchingRegression model) {
   const std::vector<RegressionSums> sums = sums_of_modes(transitions, posterior, prior.mean);
-  const Index K = model.modes(), sharing = options.one_theta ? K : 1;  // number of modes with one theta
+  const Index K = model.modes();
+  std::vector<Eigen::MatrixXd> scatter(sums.size());
+  Eigen::VectorXd weight(K);
   for (int i = 0; i < options.alternations; ++i) {
     // If a Q is singular, theta does not change. The objective is then minus infinity; such a fit is never chosen.
-    for (Index j = 0; j < K; j += sharing)
-      if (const auto theta = best_theta(sums, prior, model, j, j + sharing))
-        model.theta.middleCols(j, sharing).colwise() = *theta;
+    for (Index first = 0, end = 0; first < K; first = end) {
+      end = model.end_of_motion(first);
+      if (const auto theta = best_theta(sums, prior, model, first, end))
+        model.theta.middleCols(first, end - first).colwise() = *theta;
+    }
     for (Index j = 0; j < K; ++j) {
       const Eigen::MatrixXd change = coefficients(transitions.structure, model.theta.col(j) - prior.mean);
-      model.Q[j] = (sums[j].scatter_after(change) + prior.noise_transitions * prior.noise) /
-                   (sums[j].weight + prior.noise_transitions);
+      scatter[j] = sums[j].scatter_after(change) + prior.noise_transitions * prior.noise;
+      weight(j) = sums[j].weight + prior.noise_transitions;
     }
+    raise_noise(scatter, weight, model);
   }
   model.initial = posterior.first.array() + prior.counts;
   model.initial /= model.initial.sum();
-  if (model.logit.empty()) {
-    const Eigen::ArrayXXd counts = posterior.switches.array() + prior.counts;
-    model.transition = counts.colwise() / counts.rowwise().sum();
-  } else {
+  const Eigen::MatrixXd counts = posterior.switches.array() + prior.counts;
+  if (!model.logit.empty()) {
     raise_switching(transitions, posterior, prior, model);
+  } else if (model.noise_levels > 1) {
+    const auto [of_motions, of_levels] = chains_of(counts, model.noise_levels);
+    model.transition = Eigen::kroneckerProduct(of_motions, of_levels);
+  } else {
+    model.transition = rows_sum_to_one(counts);
   }
   return model;
 }
@@ -277,7 +325,7 @@ SwitchingRegression maximise(const TrainingTransitions& transitions, const ModeP
 void iterate(const TrainingTransitions& transitions, const SwitchingPrior& prior, const SwitchingEmOptions& options,
              Index iterations, SwitchingFit& fit) {
   if (fit.objective.empty()) fit.posterior = smooth_modes(transitions, fit.model);
-  const auto objective = [&] { return fit.posterior.log_likelihood + log_prior(prior, options.one_theta, fit.model); };
+  const auto objective = [&] { return fit.posterior.log_likelihood + log_prior(prior, fit.model); };
   for (Index i = 0; i < iterations && !fit.converged; ++i) {
     fit.objective.push_back(objective());
     fit.model = maximise(transitions, fit.posterior, prior, options, std::move(fit.model));

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "filter/learn/from_mixture/training_transitions.hpp"
@@ -19,9 +20,20 @@ struct SwitchingRegression {
   Eigen::MatrixXd transition;      ///< K x K; row i: the mode before a switch is i
   Eigen::VectorXd initial;         ///< K, before the first transition of a run, as in the filter
   TransitionLogit logit = {};      ///< dependence of T on x[k] and the acting inputs; empty if T is constant
+  std::vector<Index> motion = {};  ///< K, as in Bank, modes of one motion in a row; empty: each mode is one of its own
+  Index noise_levels = 1;          ///< as in Bank
 
   Index modes() const { return theta.cols(); }
+  /// The first mode after `first` that has another motion.
+  Index end_of_motion(Index first) const {
+    Index end = first + 1;
+    while (!motion.empty() && end < modes() && motion[end] == motion[first]) ++end;
+    return end;
+  }
 };
+
+/// The chains of motions and of levels, whose Kronecker product T is; of any K x K sums of switches, the marginal sums.
+std::pair<Eigen::MatrixXd, Eigen::MatrixXd> chains_of(const Eigen::MatrixXd& T, Index noise_levels);
 
 SwitchingRegression switching_model(const Bank& bank);
 /// The bank `frame` with the modes, T and initial probabilities of `model`, without standard errors.
@@ -43,7 +55,7 @@ SwitchingPrior switching_prior(const TrainingTransitions& transitions, const Glo
                                const Eigen::VectorXd& prior_sd, double noise_transitions, double logit_width = 0.0);
 
 /// Log density of the prior at `model`, up to a constant; minus infinity if a Q is not definite.
-double log_prior(const SwitchingPrior& prior, bool one_theta, const SwitchingRegression& model);
+double log_prior(const SwitchingPrior& prior, const SwitchingRegression& model);
 
 /// Smoothed mode probabilities given all transitions of the runs.
 struct ModePosterior {
@@ -69,7 +81,6 @@ std::vector<RegressionSums> sums_of_modes(const TrainingTransitions& transitions
 inline constexpr double usual_Q_transitions = 4.0;
 
 struct SwitchingEmOptions {
-  bool one_theta = false;   ///< whether all modes share theta and differ only in Q
   double tolerance = 1e-6;  ///< nats per transition; the fit has converged if the objective gains less
   int alternations = 3;     ///< between theta and Q in one maximisation
 };
@@ -104,25 +115,20 @@ void iterate(const TrainingTransitions& transitions, const SwitchingPrior& prior
 SwitchingRegression start_from_stretches(const TrainingTransitions& transitions, const SwitchingPrior& prior,
                                          Index modes, Index length, std::uint64_t seed, Index index);
 
-/// Tolerance for a mean-square growth above 1: that of double integrators cannot be computed more accurately.
-inline constexpr double growth_slack = 1e-4;
-
-/// Growth per step of the second moment of x[k+1] = F_j x[k] under switching by T, the spectral radius of X_j -> sum_i
-/// T_ij F_i X_i F_i' (Costa, Fragoso & Marques 2005, "Discrete-Time Markov Jump Linear Systems", chapter 3). Below 1
-/// the system is mean-square stable. Accurate to 1e-8; for a defective operator (double integrators) to about eps^(1 /
-/// order of the defect). Infinite if a mode is not finite.
-double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model);
-
 /// Removes the model's worst unusable mode and returns it; empty if all modes are usable. The last mode always stays.
 /// Reasons, worst first:
 /// - "starved": the mode has fewer effective transitions than regressors + 1.
-/// - "unstable": the spectral radius of I + A is above 1 and the switching system with the mode is not mean-square
-///   stable. The largest radius comes first. (A mode that never lasts may be unstable by itself.)
+/// - "unstable": the spectral radius of I + A is above 1 and the mode has less than least_unstable_share of the
+///   transitions. The largest radius comes first.
 /// - "duplicate" of another mode, which takes its transitions: pooling both costs less than a likelihood-ratio test at
 ///   5 % would detect. The cost is the bound of Runnalls 2007, IEEE Trans. AES 43(3): the increase of 1/2 sum W log det
 ///   Q.
+/// Modes of a product with noise levels stay.
 std::optional<ScreenedMode> drop_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                                            bool one_theta, SwitchingRegression& model);
+                                            SwitchingRegression& model);
+
+/// An unstable mode with this share of the transitions stays: the loop bounds the data, and left-out scores judge it.
+inline constexpr double least_unstable_share = 0.05;
 
 /// Merges the pair of modes whose pooling costs least (see "duplicate" above). Requires at least two modes.
 void merge_closest_pair(const TrainingTransitions& transitions, const ModePosterior& posterior,

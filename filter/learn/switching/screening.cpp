@@ -30,13 +30,15 @@ struct DuplicateModes {
   Index kept, dropped;
 };
 
-/// The pair of modes whose pooling costs least, if the cost is below `least` nats.
-std::optional<DuplicateModes> closest_duplicates(const std::vector<RegressionSums>& modes, double least) {
+/// The pair of modes whose pooling costs least, of those that cost less than `most(i, j)` nats.
+template <class Most>
+std::optional<DuplicateModes> closest_duplicates(const std::vector<RegressionSums>& modes, Most most) {
   std::optional<DuplicateModes> duplicates;
+  double least = std::numeric_limits<double>::infinity();
   for (Index i = 0; i < std::ssize(modes); ++i)
     for (Index j = i + 1; j < std::ssize(modes); ++j) {
       const double loss = cost(modes[i] + modes[j]) - cost(modes[i]) - cost(modes[j]);
-      if (!(loss < least)) continue;
+      if (!(loss < least && loss < most(i, j))) continue;
       least = loss;
       duplicates = modes[i].weight >= modes[j].weight ? DuplicateModes{i, j} : DuplicateModes{j, i};
     }
@@ -50,6 +52,11 @@ void drop_mode(Index mode, SwitchingRegression& model) {
   rest.erase(rest.begin() + mode);
   model.theta = model.theta(Eigen::all, rest).eval();
   model.Q.erase(model.Q.begin() + mode);
+  if (!model.motion.empty()) {
+    const bool last_of_motion = std::ranges::count(model.motion, model.motion[mode]) == 1;
+    for (Index j = mode + 1; last_of_motion && j < std::ssize(model.motion); ++j) --model.motion[j];
+    model.motion.erase(model.motion.begin() + mode);
+  }
   model.transition = model.transition(rest, rest).eval();
   model.transition = (model.transition.array().colwise() / model.transition.array().rowwise().sum()).eval();
   model.initial = model.initial(rest).eval();
@@ -76,35 +83,9 @@ double radius(const LinearStructure& structure, const SwitchingRegression& model
 
 }  // namespace
 
-double mean_square_growth(const LinearStructure& structure, const SwitchingRegression& model) {
-  const Index n = structure.dimension(), K = model.modes();
-  std::vector<Eigen::MatrixXd> F;
-  bool one_motion = true;
-  for (Index j = 0; j < K; ++j) {
-    F.push_back(unpack(structure, model.theta.col(j)).full_form());
-    if (!F.back().allFinite()) return std::numeric_limits<double>::infinity();
-    one_motion = one_motion && F.back() == F.front();
-  }
-  // If all modes have one motion, the sum of their moments evolves like the moment of a single mode, because rows of T
-  // sum to one. A root of the n x n matrix is exact even if the larger operator has multiple eigenvalues.
-  if (one_motion) return std::pow(radius(structure, model, 0), 2);
-  const auto after_a_step = [&](const Eigen::VectorXd& moments) -> Eigen::VectorXd {
-    Eigen::MatrixXd moved = moments.reshaped(n * n, K);
-    for (Index i = 0; i < K; ++i) {
-      const Eigen::MatrixXd& of_mode = F[i];
-      moved.col(i) = (of_mode * moved.col(i).reshaped(n, n) * of_mode.transpose()).eval().reshaped();
-    }
-    return (moved * model.transition).reshaped();
-  };
-  // The operator maps positive semidefinite matrices to positive semidefinite matrices. So its spectral radius is an
-  // eigenvalue (Krein & Rutman 1948), and no other eigenvalue has a larger real part.
-  const Eigen::MatrixXd white = Eigen::MatrixXd::Identity(n, n);
-  return largest_real_eigenvalue(after_a_step, white.reshaped().replicate(K, 1));
-}
-
 std::optional<ScreenedMode> drop_worst_mode(const TrainingTransitions& transitions, const ModePosterior& posterior,
-                                            bool one_theta, SwitchingRegression& model) {
-  if (model.modes() < 2) return std::nullopt;
+                                            SwitchingRegression& model) {
+  if (model.modes() < 2 || model.noise_levels > 1) return std::nullopt;
   const LinearStructure& structure = transitions.structure;
   // The sums are taken about a point near every mode, so that few digits are lost.
   const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model.theta.rowwise().mean());
@@ -112,20 +93,26 @@ std::optional<ScreenedMode> drop_worst_mode(const TrainingTransitions& transitio
     const double share = modes[j].weight / transitions.usable.sum();
     return ScreenedMode{j, share, radius(structure, model, j), reason + " after refinement"};
   };
-  Index fewest = 0, fastest = 0;
-  for (Index j = 1; j < model.modes(); ++j) {
+  const double unused = least_unstable_share * transitions.usable.sum();
+  Index fewest = 0, fastest = -1;  // -1: no unstable mode that is hardly used
+  double largest = 1.0 + spectral_radius_slack;
+  for (Index j = 0; j < model.modes(); ++j) {
     if (modes[j].weight < modes[fewest].weight) fewest = j;
-    if (radius(structure, model, j) > radius(structure, model, fastest)) fastest = j;
+    if (modes[j].weight >= unused || !(radius(structure, model, j) > largest)) continue;
+    fastest = j;
+    largest = radius(structure, model, j);
   }
   const bool starved = modes[fewest].weight < static_cast<double>(structure.regressors() + 1);
-  if (starved || (radius(structure, model, fastest) > 1.0 + spectral_radius_slack &&
-                  mean_square_growth(structure, model) > 1.0 + growth_slack)) {
+  if (starved || fastest >= 0) {
     ScreenedMode dropped = starved ? mode(fewest, "starved") : mode(fastest, "unstable");
     drop_mode(starved ? fewest : fastest, model);
     return dropped;
   }
-  const Index of_theta = one_theta ? 0 : structure.parameters(), of_Q = structure.states * (structure.states + 1) / 2;
-  const double by_chance = 0.5 * chi_square_quantile(duplicate_significance, static_cast<double>(of_theta + of_Q));
+  const Index of_theta = structure.parameters(), of_Q = structure.states * (structure.states + 1) / 2;
+  const auto by_chance = [&](Index i, Index j) {
+    const Index numbers = (model.end_of_motion(i) > j ? 0 : of_theta) + of_Q;
+    return 0.5 * chi_square_quantile(duplicate_significance, static_cast<double>(numbers));
+  };
   const std::optional<DuplicateModes> duplicates = closest_duplicates(modes, by_chance);
   if (!duplicates) return std::nullopt;
   ScreenedMode dropped = mode(duplicates->dropped, fmt::format("duplicate of mode {}", duplicates->kept));
@@ -136,7 +123,8 @@ std::optional<ScreenedMode> drop_worst_mode(const TrainingTransitions& transitio
 void merge_closest_pair(const TrainingTransitions& transitions, const ModePosterior& posterior,
                         SwitchingRegression& model) {
   const std::vector<RegressionSums> modes = sums_of_modes(transitions, posterior, model.theta.rowwise().mean());
-  if (const auto closest = closest_duplicates(modes, std::numeric_limits<double>::infinity()))
+  if (const auto closest =
+          closest_duplicates(modes, [](Index, Index) { return std::numeric_limits<double>::infinity(); }))
     merge(*closest, modes, model);
 }
 

@@ -87,6 +87,7 @@ void exchange_terms(Io& io, S& stored) {
 /// The filter measures the recorded states. If there are equally many outputs and states, outputs have the states'
 /// units.
 /// - weight: mixture weight of each mode
+/// - motion: numbers the motions; modes of one motion differ in noise. Absent: each mode is a motion of its own
 /// - c: constant increment of the state
 /// - A: x[k+1] = x[k] + A x[k] + B u[k] + c; n counts lagged states too
 /// - B: matrix of the inputs; m counts lagged inputs too
@@ -106,9 +107,6 @@ void exchange_terms(Io& io, S& stored) {
 /// - transition_weights: weights of the transition logit on features of state and input
 /// - transition_reference: value of the features at which `transition` holds
 /// - initial_probability: probability of each mode at the start of a run
-/// - noise_directions: directions, one per row, each divided by its root mean square
-/// - noise_weights: every Q is times exp(sum weights log(|directions . (z, v)| + 0.1) - offset), bounded to 0.2 to 5
-/// - noise_offset: the offset in the formula of `noise_weights`
 /// - motion_parameters: parameters of a motion model
 /// - motion_standard_error: standard errors of `motion_parameters`
 template <class Io, class S>
@@ -117,6 +115,7 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   const bool measured = static_cast<std::size_t>(stored.C.cols()) == states.size();
   const Unit outputs(states.begin(), states.begin() + (measured ? stored.C.rows() : 0));
   io.field("weight", stored.weight, {"K"}, {}, rule::share);
+  io.optional_field("motion", stored.motion, {"K"}, {}, rule::position("K"));
   io.field("c", stored.c, {"K", "n"}, states, rule::finite);
   io.field("A", stored.A, {"K", "n", "n"}, ratios(states, states), rule::finite);
   io.field("B", stored.B, {"K", "n", "m"}, ratios(states, inputs), rule::finite);
@@ -146,11 +145,10 @@ void exchange_modes(Io& io, S& stored, const Unit& states, const Unit& inputs, c
   io.field("transition", stored.transition, {"K", "K"}, {}, rule::probabilities);
   io.optional_field("transition_weights", stored.transition_weights, {"K", "K", "features"}, {}, rule::finite);
   io.optional_field("transition_reference", stored.transition_reference, {"features"}, {}, rule::finite);
-  io.optional_field("transition_weight_standard_error", stored.transition_weight_error, {"K", "features"});
   io.field("initial_probability", stored.initial_probability, {"K"}, {}, rule::probabilities);
-  io.optional_field("noise_directions", stored.noise_directions, {"noise_features", "features"}, {}, rule::finite);
-  io.optional_field("noise_weights", stored.noise_weights, {"noise_features"}, {}, rule::finite);
-  io.attribute_unless(0.0, "noise_offset", stored.noise_offset, rule::finite);
+  if constexpr (Io::reads)
+    if (io.has("noise_weights"))
+      throw DataError("the bank's noise follows state and input, which this version does not support; run again");
   exchange_terms(io, stored);
   io.optional_field("motion_parameters", stored.motion_parameters, {"K", "p_motion"}, motion, rule::finite);
   io.optional_field("motion_standard_error", stored.motion_standard_error, {"K", "p_motion"}, motion);

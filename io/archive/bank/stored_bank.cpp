@@ -10,8 +10,7 @@ namespace modebank {
 using Eigen::Index;
 
 Eigen::MatrixXd one_of(const Eigen::MatrixXd& columns, Index k, Index rows, Index cols) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-  return Eigen::Map<const RowMajor>(columns.col(k).data(), rows, cols);
+  return columns.col(k).reshaped<Eigen::RowMajor>(rows, cols);
 }
 
 StoredChannels store_model_parameters(const std::vector<ModelParameter>& parameters) {
@@ -58,14 +57,12 @@ LinearStructure restore_structure(LinearStructure structure, Index dimension, In
 
 namespace {
 
-enum class Presence { always, if_any };
-
 /// Calls `visit` for every array of the modes. Its arguments are the member of StoredBank, the name in messages, rows,
-/// columns, the member of a mode, and whether a bank may lack the array.
+/// columns, the member of a mode, and whether every bank has the array.
 template <class Visit>
 void for_each_mode_array(const LinearStructure& s, Index p_motion, Index terms, Visit visit) {
   const Index n = s.dimension(), p = s.parameters();
-  const Presence always = Presence::always, if_any = Presence::if_any;
+  const bool always = true, if_any = false;
   const auto of_model = [](auto matrix) {
     return [=](auto& mode) -> auto& { return mode.model.*matrix; };
   };
@@ -108,7 +105,6 @@ void for_each_bank_matrix(Visit visit) {
   visit(&StoredBank::R, &Bank::R);
   visit(&StoredBank::R_standard_error, &Bank::R_standard_error);
   visit(&StoredBank::transition_standard_error, &Bank::transition_standard_error);
-  visit(&StoredBank::transition_weight_error, &Bank::transition_weight_error);
 }
 
 /// In the layout, weights may depend on the previous mode. In this version they are equal for all previous modes.
@@ -130,9 +126,8 @@ TransitionLogit restore_logit(const StoredBank& stored, Index modes) {
   }
   if (weights.rows() != modes * stored.transition_reference.size())
     throw DataError("transition weights and their reference differ in the number of features");
-  for (Index k = 1; k < weights.cols(); ++k)
-    if (weights.col(k) != weights.col(0))
-      throw DataError("transition weights depend on the previous mode, which this version does not support");
+  if (weights != weights.col(0).replicate(1, weights.cols()))
+    throw DataError("transition weights depend on the previous mode, which this version does not support");
   return {one_of(weights, 0, modes, stored.transition_reference.size()), stored.transition_reference};
 }
 
@@ -159,8 +154,7 @@ void store_terms(const MotionTerms& terms, StoredBank& stored) {
 MotionTerms restore_terms(const StoredBank& stored) {
   MotionTerms terms{stored.term_directions, stored.term_low, stored.term_high, stored.term_unit, {}};
   const Index T = std::ssize(stored.term_kinds);
-  if (stored.term_knots.size() != T || stored.term_variables.cols() != T ||
-      stored.bend.size() % std::max(T, Index{1}) != 0)
+  if (stored.term_knots.size() != T || stored.term_variables.cols() != T)
     throw DataError("the terms have " + std::to_string(T) + " kinds, " + std::to_string(stored.term_knots.size()) +
                     " knots and the variables of " + std::to_string(stored.term_variables.cols()));
   if (T > 0 && stored.bend.rows() != T * stored.structure.states)
@@ -191,10 +185,9 @@ StoredBank store_bank(const Bank& bank) {
   stored.model = bank.model;
   stored.structure = bank.structure;
   for_each_mode_array(bank.structure, std::ssize(bank.motion_parameters), bank.terms.count(),
-                      [&](auto array, const char* what, Index rows, Index cols, auto of, Presence presence) {
+                      [&](auto array, const char* what, Index rows, Index cols, auto of, bool always) {
                         const auto absent = [&](const Mode& mode) { return std::invoke(of, mode).size() == 0; };
-                        if (presence == Presence::if_any && std::all_of(bank.modes.begin(), bank.modes.end(), absent))
-                          return;
+                        if (!always && std::all_of(bank.modes.begin(), bank.modes.end(), absent)) return;
                         stored.*array = side_by_side(
                             bank.modes.size(), rows, cols,
                             what, [&](std::size_t k) -> const auto& { return std::invoke(of, bank.modes[k]); });
@@ -206,16 +199,12 @@ StoredBank store_bank(const Bank& bank) {
     stored.weight(k) = bank.modes[static_cast<std::size_t>(k)].weight;
   }
   for_each_bank_matrix([&](auto array, auto matrix) { stored.*array = (bank.*matrix).transpose(); });
+  stored.motion = Eigen::Map<const Eigen::VectorX<Index>>(bank.motion.data(), std::ssize(bank.motion)).cast<int>();
   stored.transition = bank.transition.matrix().transpose();
   store_logit(bank, stored);
   store_terms(bank.terms, stored);
   stored.quantum = bank.quantum;
   stored.initial_probability = bank.initial_probability;
-  if (const NoiseFactor& factor = bank.noise_factor; !factor.empty()) {
-    stored.noise_directions = factor.directions.transpose();
-    stored.noise_weights = factor.weights;
-    stored.noise_offset = factor.offset;
-  }
   return stored;
 }
 
@@ -235,17 +224,20 @@ Bank restore_bank(const StoredBank& stored, Bank bank) {
     Mode& mode = bank.modes[static_cast<std::size_t>(k)];
     mode.weight = stored.weight(k);
     for_each_mode_array(s, p_motion, bank.terms.count(),
-                        [&](auto array, const char*, Index rows, Index cols, auto of, Presence presence) {
-                          if (presence == Presence::always || (stored.*array).size() > 0)
+                        [&](auto array, const char*, Index rows, Index cols, auto of, bool always) {
+                          if (always || (stored.*array).size() > 0)
                             std::invoke(of, mode) = one_of(stored.*array, k, rows, cols);
                         });
   }
   for_each_bank_matrix([&](auto array, auto matrix) { bank.*matrix = (stored.*array).transpose(); });
+  bank.motion.assign(stored.motion.begin(), stored.motion.end());
+  for (const int i : stored.motion)
+    if (i > 0 && (stored.motion.array() != i - 1).all())
+      throw DataError("no mode belongs to motion " + std::to_string(i - 1));
   bank.transition = TransitionMatrix(stored.transition.transpose());
   bank.transition_logit = restore_logit(stored, stored.weight.size());
   bank.quantum = stored.quantum;
   bank.initial_probability = stored.initial_probability;
-  bank.noise_factor = {stored.noise_directions.transpose(), stored.noise_weights, stored.noise_offset};
   validate(bank);
   return bank;
 }

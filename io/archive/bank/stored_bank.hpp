@@ -18,7 +18,6 @@ namespace modebank {
 /// messages.
 template <class Get>
 Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index cols, const char* what, Get get) {
-  using RowMajor = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   Eigen::MatrixXd result(rows * cols, static_cast<Eigen::Index>(count));
   for (std::size_t k = 0; k < count; ++k) {
     const auto& matrix = get(k);
@@ -26,7 +25,7 @@ Eigen::MatrixXd side_by_side(std::size_t count, Eigen::Index rows, Eigen::Index 
       throw std::invalid_argument(std::string(what) + " of mode " + std::to_string(k) + " is " +
                                   std::to_string(matrix.rows()) + " x " + std::to_string(matrix.cols()) + ", must be " +
                                   std::to_string(rows) + " x " + std::to_string(cols));
-    Eigen::Map<RowMajor>(result.col(static_cast<Eigen::Index>(k)).data(), rows, cols) = matrix;
+    result.col(static_cast<Eigen::Index>(k)) = matrix.template reshaped<Eigen::RowMajor>();
   }
   return result;
 }
@@ -72,27 +71,20 @@ struct StoredBank {
   Eigen::MatrixXd steady_gain, response_time_s, settling_time_s, overshoot;  ///< n_y*inputs x K; may be empty
   Eigen::MatrixXd steady_gain_error, response_time_error_s, settling_time_error_s, overshoot_error;  ///< the same
   Eigen::MatrixXd largest_pole, largest_pole_error, never_settles;                                   ///< the same
-  Eigen::MatrixXd R_standard_error;           ///< transposed; may be empty
-  Eigen::MatrixXd transition_standard_error;  ///< transposed; may be empty
-  Eigen::MatrixXd transition_weights;         ///< K*d x K; equal for every previous mode; may be empty
-  Eigen::VectorXd transition_reference;       ///< d; may be empty
-  Eigen::MatrixXd transition_weight_error;    ///< d x K; may be empty
-  Eigen::MatrixXd C;                          ///< transposed
-  Eigen::MatrixXd R;                          ///< transposed
-  Eigen::VectorXd quantum;                    ///< n_y; may be empty
-  Eigen::MatrixXd transition;                 ///< transposed
+  Eigen::MatrixXd R_standard_error, transition_standard_error;  ///< transposed; may be empty
+  Eigen::MatrixXd transition_weights;    ///< K*d x K; equal for every previous mode; may be empty
+  Eigen::VectorXd transition_reference;  ///< d; may be empty
+  Eigen::VectorXi motion;                ///< K; may be empty
+  Eigen::MatrixXd C, R, transition;      ///< transposed
+  Eigen::VectorXd quantum;               ///< n_y; may be empty
   Eigen::VectorXd initial_probability;
-  Eigen::MatrixXd noise_directions;  ///< (n+m) x d; empty unless the noise depends on state and input
-  Eigen::VectorXd noise_weights;     ///< d
-  double noise_offset = 0.0;
   // Nonlinear terms. All arrays are empty if the bank has no terms.
   std::vector<std::string> term_kinds;             ///< T
   Eigen::MatrixXd term_variables;                  ///< 3 x T positions; -1: no variable
   Eigen::VectorXd term_knots;                      ///< T
   Eigen::MatrixXd term_directions;                 ///< q x V
   Eigen::VectorXd term_low, term_high, term_unit;  ///< V
-  Eigen::MatrixXd bend;                            ///< n_y*T x K
-  Eigen::MatrixXd bend_standard_error;             ///< n_y*T x K
+  Eigen::MatrixXd bend, bend_standard_error;       ///< n_y*T x K
 };
 StoredBank store_bank(const Bank& bank);
 /// Reads or writes the members of StoredBank, except names, `dt_s` and screened modes.

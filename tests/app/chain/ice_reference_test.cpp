@@ -157,7 +157,7 @@ TEST_P(IceReference, TheNumberOfComponentsDoesNotDependOnTheFloorOrTheSeed) {
         const MixtureResult result = select_mixture(fits, cloud, options, seed);
         const Index components = result.mixture.components();
         EXPECT_EQ(components, GetParam().odd_runs_train ? 1 : 2) << floor << ", seed " << seed;
-        EXPECT_FALSE(result.candidates[static_cast<std::size_t>(components - 1)].floor_active);
+        EXPECT_FALSE(result.candidates[components - 1].floor_active);
       }
   }
 }

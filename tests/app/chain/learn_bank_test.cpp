@@ -28,7 +28,6 @@ class LearnBank : public CliTest {
     EXPECT_EQ(bank.R, expected.R);
     EXPECT_EQ(bank.transition.matrix(), expected.transition.matrix());
     EXPECT_EQ(bank.initial_probability, expected.initial_probability);
-    EXPECT_EQ(bank.noise_factor.weights, expected.noise_factor.weights);
     EXPECT_EQ(learned.baseline.internal().R, made.baseline->R);
     EXPECT_EQ(learned.baseline.internal().theta(0), made.baseline->theta(0));
   }

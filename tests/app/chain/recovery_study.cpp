@@ -15,7 +15,7 @@ SimulationOptions recovery_system(const RecoveryCase& recovery, int seed) {
                                                   {-0.80, -0.50, 0.15}, {-0.10, -0.50, 0.80}, {-0.90, -0.10, -0.30}};
   SimulationOptions options;
   const int count = 2 + seed % 5;
-  for (int k = 0; k < count; ++k) options.modes.emplace_back(modes[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < count; ++k) options.modes.emplace_back(modes[k]);
   options.process_sd = {0.02};
   options.measurement_sd = 0.004;
   options.input_law = recovery.hold_samples > 1 ? InputLaw::hold : InputLaw::white;
@@ -61,7 +61,7 @@ RecoveredSize recover_size(const RecoveryCase& recovery, int seed) {
 
 std::vector<RecoveredSize> recover_sizes(const RecoveryCase& recovery, int seeds) {
   std::vector<RecoveredSize> sizes(static_cast<std::size_t>(seeds));
-  tbb::parallel_for(0, seeds, [&](int i) { sizes[static_cast<std::size_t>(i)] = recover_size(recovery, i + 1); });
+  tbb::parallel_for(0, seeds, [&](int i) { sizes[i] = recover_size(recovery, i + 1); });
   return sizes;
 }
 

@@ -28,7 +28,7 @@ SimulationOptions system_of(int seed) {
       {-0.60, -0.72, 0.72}, {-0.25, -0.20, 0.20}, {-0.45, -0.10, 0.50}, {-0.80, -0.50, 0.15}};
   SimulationOptions options;
   const int count = 2 + seed % 3;
-  for (int k = 0; k < count; ++k) options.modes.emplace_back(modes[static_cast<std::size_t>(k)]);
+  for (int k = 0; k < count; ++k) options.modes.emplace_back(modes[k]);
   options.process_sd = {0.02};
   options.measurement_sd = 0.004;
   options.input_law = InputLaw::white;
@@ -93,7 +93,7 @@ Stationary stationary_seed(int seed) {
   result.matched = is_permutation_of_modes(truth, system.modes.size());
   for (Index k = 0; k < bank.mode_count(); ++k) {
     const auto i = static_cast<std::size_t>(k);
-    const Eigen::ArrayXd error = (bank.theta(k) - system.modes[static_cast<std::size_t>(truth[i])]).array().abs();
+    const Eigen::ArrayXd error = (bank.theta(k) - system.modes[truth[i]]).array().abs();
     result.parameters += static_cast<int>(error.size());
     result.within_three_errors += static_cast<int>((error <= 3.0 * bank.modes[i].standard_error.array()).count());
   }
@@ -102,7 +102,7 @@ Stationary stationary_seed(int seed) {
 
 TEST(Recovery, RunsThatStayInOneMode) {
   std::vector<Stationary> results(seeds);
-  tbb::parallel_for(0, seeds, [&](int s) { results[static_cast<std::size_t>(s)] = stationary_seed(s + 1); });
+  tbb::parallel_for(0, seeds, [&](int s) { results[s] = stationary_seed(s + 1); });
   int found = 0, matched = 0, parameters = 0, within = 0;
   for (const Stationary& r : results) {
     found += r.found_k;
@@ -128,7 +128,7 @@ struct Switching {
 double relative_error(const Bank& bank, const SimulationOptions& system, const std::vector<Index>& truth) {
   double worst = 0.0;
   for (Index k = 0; k < bank.mode_count(); ++k) {
-    const Eigen::VectorXd& own = system.modes[static_cast<std::size_t>(truth[static_cast<std::size_t>(k)])];
+    const Eigen::VectorXd& own = system.modes[truth[k]];
     double gap = 1e300;
     for (const Eigen::VectorXd& other : system.modes)
       if (other != own) gap = std::min(gap, (other - own).norm());
@@ -145,7 +145,7 @@ double share_of_right_modes(const Bank& bank, const Simulated& simulated, const 
       Index best = 0;
       evaluation.mode_probability.col(k).maxCoeff(&best);
       // The mode at k - 1 holds for the transition into sample k.
-      right += truth[static_cast<std::size_t>(best)] == simulated.runs[r].mode(k - 1);
+      right += truth[best] == simulated.runs[r].mode(k - 1);
     }
   }
   return static_cast<double>(right) / static_cast<double>(all);
@@ -174,7 +174,7 @@ Switching switching_seed(int seed) {
 TEST(Recovery, SwitchesInsideRuns) {
   constexpr int switching_seeds = 12;
   std::vector<Switching> results(switching_seeds);
-  tbb::parallel_for(0, switching_seeds, [&](int s) { results[static_cast<std::size_t>(s)] = switching_seed(s + 1); });
+  tbb::parallel_for(0, switching_seeds, [&](int s) { results[s] = switching_seed(s + 1); });
   int exact = 0, one_more = 0, more = 0, less = 0;
   for (const Switching& r : results) {
     EXPECT_LE(r.worst_theta_error, 0.03) << "seed " << &r - results.data() + 1;

@@ -40,7 +40,7 @@ std::string csv_run(unsigned seed) {
     const double left = uniform(), right = uniform();
     text << 0.1 * k << ',' << 0.12 * k << ',' << wz + 0.02 * uniform() << ',' << 0.9 * wz + 0.01 * uniform() << ','
          << left << ',' << right << ',' << 1.0 + 0.5 * uniform() << ',' << k / 45 << '\n';
-    wz += -0.4 * wz + gains[static_cast<std::size_t>(k / 15 % 3)] * (right - left) + 0.03 * uniform();
+    wz += -0.4 * wz + gains[k / 15 % 3] * (right - left) + 0.03 * uniform();
   }
   return text.str();
 }
@@ -219,6 +219,9 @@ const std::map<std::string, std::string> without_effect{
     {"bank.mode_names", "people's names of what was learned are no stage's"},
 };
 
+/// A key that changes an earlier stage of other data.
+constexpr const char* earlier_elsewhere = "bank.measurement_variance";  // the linear stage takes R; no base has noise
+
 bool may_be_refused(const Case& c) {
   return std::any_of(ruled_out.begin(), ruled_out.end(), [&](const RuledOut& known) {
     return known.key == c.key && c.refusal.find(known.reason) != std::string::npos;
@@ -291,7 +294,7 @@ TEST_P(StageKeyPart, ChangesWhereverAnotherValueOfAKeyChangesTheStage) {
       EXPECT_NE(effective.contains(option.key), without_effect.contains(option.key))
           << option.key << (effective.contains(option.key) ? " has an effect after all" : " changed nothing");
       const auto first = effective.find(option.key);
-      if (first == effective.end()) continue;
+      if (first == effective.end() || option.key == earlier_elsewhere) continue;
       EXPECT_EQ(name_of(static_cast<Stage>(first->second)), name_of(option.stage.value())) << option.key;
     }
 }

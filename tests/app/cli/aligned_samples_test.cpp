@@ -41,7 +41,7 @@ void expect_same(const std::vector<TimedSample>& samples, const VectorXd& time_s
                  const MatrixXd& input) {
   ASSERT_EQ(std::ssize(samples), time_s.size());
   for (Index k = 0; k < time_s.size(); ++k) {
-    const TimedSample& sample = samples[static_cast<std::size_t>(k)];
+    const TimedSample& sample = samples[k];
     EXPECT_NEAR(sample.time_s, time_s(k), 1e-12);
     EXPECT_NEAR(sample.measurement(0), state(0, k), 1e-12) << k;
     EXPECT_NEAR(sample.input(0), input(0, k), 1e-12) << k;

@@ -114,9 +114,6 @@ TEST(ExportedC, RefusesByNameWhatItDoesNotHave) {
   Bank coarse = example_bank(1, 1, 2);
   coarse.quantum = Eigen::VectorXd::Constant(1, 0.01);
   EXPECT_THAT(refusal(coarse, {}), HasSubstr("data.quantum"));
-  Bank following = example_bank(1, 1, 2);
-  following.noise_factor = {Eigen::MatrixXd::Ones(1, 2), Eigen::VectorXd::Ones(1), 0.0};
-  EXPECT_THAT(refusal(following, {}), HasSubstr("bank.measurement_variance"));
   Bank bent = example_bank(1, 1, 2);
   bent.terms.terms = {{TermKind::magnitude, {0}}};
   EXPECT_THAT(refusal(bent, {}), HasSubstr("window.terms"));

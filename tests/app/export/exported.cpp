@@ -201,10 +201,11 @@ ExportedBank as_exported(Bank bank, const FilterOptions& options) {
   exported.parameter_units.resize(exported.parameter_names.size());
   for (Index k = 0; k < bank.mode_count(); ++k) {
     exported.mode_names.push_back(fmt::format("mode {}", k));
-    ModeFamily& alone = exported.families.emplace_back();
-    alone.modes = alone.counted = {k};
-    alone.uses = {alone.use = 1.0 / static_cast<double>(bank.mode_count())};
-    const LinearModel& model = bank.modes[static_cast<std::size_t>(k)].model;
+    Motion& alone = exported.motions.emplace_back();
+    alone.number = k;
+    alone.modes = {k};
+    alone.use = 1.0 / static_cast<double>(bank.mode_count());
+    const LinearModel& model = bank.modes[k].model;
     exported.errors.push_back({0.0 * model.A, 0.0 * model.B, 0.0 * model.c});
   }
   exported.bank = std::move(bank);

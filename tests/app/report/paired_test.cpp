@@ -31,11 +31,7 @@ Archive archive_with(const std::vector<double>& gains) {
     evaluation.runs.push_back(scored);
   }
   archive.evaluations.push_back(evaluation);
-  SummaryRow row;
-  row.filter = "bank";
-  row.run = "*";
-  row.role = Role::test;
-  archive.summary.push_back(row);
+  archive.summary.push_back({"bank", Role::test, "*"});
   return archive;
 }
 

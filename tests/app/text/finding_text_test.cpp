@@ -18,12 +18,14 @@ TEST(FindingText, WhatCannotBeToldSaysWhy) {
   finding.answer = Answer::cannot_tell;
   finding.role = Role::test;
   finding.runs = 6;
-  finding.modes = 3;
+  finding.modes = finding.motions = 3;
   finding.best_competitor = "one_motion";
   finding.gains = {{"one_motion", 700, 0.12, 0.002, 4.0, 0.006, false, 0.03}};
   finding.stay = 2.34;
   finding.stay_asked = 5.0;
   EXPECT_THAT(finding_text(finding), HasSubstr("modes last 2.34 samples on average (5 or more passes)"));
+  finding.motions = 2;
+  EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("motions last 2.34"), HasSubstr("between 2 motions")));
   finding.gains.front().margin = finding.standard_error = std::nan("");
   EXPECT_THAT(finding_text(finding), AllOf(HasSubstr("too few independent samples"), HasSubstr("of unknown error")));
   finding.role = Role::train;

@@ -23,7 +23,7 @@ TEST(ModeWords, DecaysAreTold) {
   EXPECT_EQ(decay_words({0.4, 0.16275, 0.0, unknown}), "0.1628 s");
   EXPECT_EQ(decay_words({0.9, 2.0, 1.5, unknown}), "2 s, period 0.667 s");
   EXPECT_EQ(decay_words({1.0, std::numeric_limits<double>::infinity(), 0.0, unknown}), "integrates");
-  EXPECT_EQ(decay_words({1.1, -3.0, 0.0, 0.1}), "unstable: grows e-fold in 3 s");
+  EXPECT_EQ(decay_words({1.1, -3.0, 0.0, 0.1}), "unstable, held by the loop");
   EXPECT_EQ(decay_words({0.0, 0.0, 0.0, unknown}), "at once");
   // Rates are 0.5 +- 0.5 and -0.5 +- 1 per second. The upper ends of their intervals are 1.48 and 1.46 per second.
   EXPECT_EQ(decay_words({0.95, 2.0, 0.0, 2.0}), "over 0.68 s");

@@ -28,29 +28,20 @@ inline Archive screen_archive(Index states, Index inputs, Index modes, Role judg
   for (Mode& mode : bank.modes) mode.standard_error = Eigen::VectorXd::Constant(bank.structure.parameters(), 1e-3);
   double use = 0.5;
   for (Index k = -1; k < modes; ++k) {
-    DiagnosticsRow row;
-    row.filter = "bank";
-    row.role = judged;
-    row.mode = k;
-    row.dwell = 12.0;
-    row.usage = use;
-    if (k >= 0) use *= 0.6;
+    DiagnosticsRow row{"bank", judged, k, 0, use, 0.0, 12.0};
     row.coverage_50 = 0.575, row.coverage_90 = 0.934, row.coverage_95 = 0.966, row.coverage_99 = 0.989;
     row.coverage_50_lower = 0.555, row.coverage_50_upper = 0.595;
     row.coverage_90_lower = 0.895, row.coverage_90_upper = 0.944;
     row.coverage_95_lower = 0.956, row.coverage_95_upper = 0.974;
     row.coverage_99_lower = 0.983, row.coverage_99_upper = 0.993;
+    if (k >= 0) use *= 0.6;
     row.verdict = Calibration::calibrated;
     if (k < 0 || modes > 1) archive.diagnostics.push_back(row);
   }
-  for (const char* filter : {"bank", "drifting"}) {
-    SummaryRow row;
-    row.filter = filter;
-    row.role = judged;
-    row.run = "*";
-    row.rmse = Eigen::VectorXd::Constant(states, row.filter == "bank" ? 0.03 : 0.04);
-    archive.summary.push_back(row);
-    archive.horizons.push_back({filter, judged, "*", 10, 100, 0.0, 2.0 * row.rmse, 0.91});
+  for (const auto& [filter, error] : {std::pair{"bank", 0.03}, {"drifting", 0.04}}) {
+    const Eigen::VectorXd rmse = Eigen::VectorXd::Constant(states, error);
+    archive.summary.push_back({filter, judged, "*", 0, 0.0, rmse});
+    archive.horizons.push_back({filter, judged, "*", 10, 100, 0.0, 2.0 * rmse, 0.91});
   }
   archive.finding.emplace();
   archive.finding->answer = Answer::evidence;

@@ -20,13 +20,15 @@ using test::example_bank;
 using test::row_of;
 using test::simulate_truth;
 
-/// Simulates `seeds` runs, and counts the runs with each verdict. The filter's Q and R are wrong by a factor.
-std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int seeds) {
+constexpr int seeds = 20, nearly_all = 19;
+
+/// Simulates runs, and counts the runs with each verdict. The filter's Q and R are wrong by a factor.
+std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R, Index samples, int runs = seeds) {
   Bank filter = truth;
   for (Mode& mode : filter.modes) mode.Q *= of_Q;
   filter.R *= of_R;
   std::map<Calibration, int> counts;
-  for (int seed = 0; seed < seeds; ++seed) {
+  for (int seed = 0; seed < runs; ++seed) {
     const Trajectory run = simulate_truth(truth, samples, 7000 + static_cast<std::uint64_t>(seed)).run;
     ++counts[row_of(filter, {run}).verdict];
   }
@@ -34,25 +36,27 @@ std::map<Calibration, int> verdicts(const Bank& truth, double of_Q, double of_R,
 }
 
 TEST(Calibration, VerdictsAreRightSeedBySeed) {
-  constexpr int seeds = 20, nearly_all = 19;
+  const auto expect = [](const Bank& bank, double of_Q, double of_R, Index samples, Calibration verdict) {
+    EXPECT_GE(verdicts(bank, of_Q, of_R, samples)[verdict], nearly_all) << of_Q << ' ' << bank.R;
+  };
   for (const double r : {1e-8, 1.3e-4, 1.3e-3}) {  // Q = 1.3e-4
     const Bank bank = test::single_mode(example_bank(1, 1, 1, r), 0);
-    EXPECT_GE(verdicts(bank, 1, 1, 1500, seeds)[Calibration::calibrated], nearly_all) << r;
-    std::map<Calibration, int> few = verdicts(bank, 1, 1, 30, seeds);
+    expect(bank, 1, 1, 1500, Calibration::calibrated);
+    std::map<Calibration, int> few = verdicts(bank, 1, 1, 30);
     EXPECT_GE(few[Calibration::undecided] + few[Calibration::calibrated], nearly_all) << r;
     if (r < 1e-3) {  // if R is ten times Q, a wrong Q has little effect
-      EXPECT_GE(verdicts(bank, 0.25, 1, 500, seeds)[Calibration::overconfident], nearly_all) << r;
-      EXPECT_GE(verdicts(bank, 4, 1, 500, seeds)[Calibration::underconfident], nearly_all) << r;
+      expect(bank, 0.25, 1, 500, Calibration::overconfident);
+      expect(bank, 4, 1, 500, Calibration::underconfident);
     }
     if (r > 1e-6) {
-      EXPECT_GE(verdicts(bank, 1, 0.25, 500, seeds)[Calibration::overconfident], nearly_all) << r;
-      EXPECT_GE(verdicts(bank, 1, 4, 500, seeds)[Calibration::underconfident], nearly_all) << r;
+      expect(bank, 1, 0.25, 500, Calibration::overconfident);
+      expect(bank, 1, 4, 500, Calibration::underconfident);
     }
   }
   // Without measurement noise, thirty samples are enough to detect a wrong variance by a factor of four.
   const Bank exact = test::single_mode(example_bank(1, 1, 1, 1e-8), 0);
-  EXPECT_GE(verdicts(exact, 0.25, 1, 30, seeds)[Calibration::overconfident], nearly_all);
-  EXPECT_GE(verdicts(exact, 4, 1, 30, seeds)[Calibration::underconfident], nearly_all);
+  expect(exact, 0.25, 1, 30, Calibration::overconfident);
+  expect(exact, 4, 1, 30, Calibration::underconfident);
 }
 
 /// With many samples even a negligible deviation is significant.
@@ -188,7 +192,11 @@ TEST(Calibration, TimeOfATailIsItsHits) {
     const double time = autocorrelation_time({hits});
     // relative standard error of the estimated time
     EXPECT_NEAR(autocorrelation_time_of_tail({scores}), time, 0.12 * time) << rho;
+    const Autocorrelation largest = largest_autocorrelation({scores});
+    EXPECT_NEAR(largest.value, rho, 0.02);
+    EXPECT_TRUE(rho == 0.0 || largest.lag == 1) << rho;
   }
+  EXPECT_EQ(largest_autocorrelation({{1.0, 2.0}}).lag, 0);
   EXPECT_TRUE(std::isnan(autocorrelation_time_of_tail({{}})));
   EXPECT_EQ(autocorrelation_time_of_tail({{1.0}}), 1.0);
   EXPECT_EQ(cautious_time(1.0, 10.0), 1.0);

@@ -6,6 +6,7 @@
 #include <boost/random/normal_distribution.hpp>
 #include <random>
 
+#include "filter/step/motions.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank {
@@ -39,11 +40,12 @@ struct Case {
   double step_scatter = 0.0;
   std::vector<DiagnosticsRow> diagnostics;
   ErrorPattern pattern;
+  double response = 1.0;
 
   Finding judged() const {
     const Densities of_bank = scores_of("bank", bank_gain);
-    return judge_modes(
-        {bank, role, of_bank, competitors, summary, horizons, states, free_runs, step_scatter, diagnostics, pattern});
+    return judge_modes({bank, role, of_bank, competitors, summary, horizons, states, free_runs, step_scatter,
+                        diagnostics, pattern, response});
   }
 };
 
@@ -81,14 +83,30 @@ TEST(Finding, AGainWithinItsErrorTellsNothing) {
   noisy.bank_gain = 0.12;  // a loss, but one that chance gives as well
   EXPECT_LT(noisy.judged().gain, 0.0);
   EXPECT_EQ(noisy.judged().answer, Answer::cannot_tell);
-  Case few;  // two samples in each of six runs are enough, in one run they are not
+  Case few;  // twelve samples in each of six runs gain 14 nats and are enough, in one run they are not
   for (Densities& competitor : few.competitors)
-    for (VectorXd& run : competitor.of_runs) run.tail(198).setConstant(std::nan(""));
+    for (VectorXd& run : competitor.of_runs) run.tail(188).setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::evidence);
   for (Densities& competitor : few.competitors)
     for (std::size_t r = 1; r < 6; ++r) competitor.of_runs[r].setConstant(std::nan(""));
   EXPECT_EQ(few.judged().answer, Answer::cannot_tell);
   EXPECT_EQ(doubt_of(few.judged()), Doubt::few_samples);
+}
+
+/// A plant of 2 s, logged at three rates for 300 of its response times: each asks for ten times 0.02 nats.
+TEST(Finding, TheLimitOfAGainIsThatOfTheSystemNotOfItsLogger) {
+  Bank plant = one_mode_bank({1, 1, false}, Eigen::Vector2d::Zero(), VectorXd::Ones(1));
+  for (const double dt_s : {0.1, 0.02, 0.01}) {
+    const double decay = -std::expm1(-dt_s / 2.0);
+    plant.dt_s = dt_s;
+    plant.modes.front().response = step_response(plant.structure, Eigen::Vector2d(-decay, decay), {}, {1}, dt_s);
+    EXPECT_NEAR(response_samples(plant), 2.0 / dt_s, 1e-9);
+    EXPECT_NEAR(least_nats(600.0 / dt_s, response_samples(plant)), 0.2 * 300.0, 1e-9);
+  }
+  plant.modes.front().response = step_response(plant.structure, Eigen::Vector2d(0.0, 1.0), {}, {1}, 0.1);
+  EXPECT_EQ(response_samples(plant), 1.0) << "an integrator";
+  EXPECT_EQ(least_nats(1200.0, 1.0), 24.0);
+  EXPECT_EQ(least_nats(1200.0, 200.0), 12.0);
 }
 
 /// In each of these cases the gain over `noise_only` and `one_motion` is significant.
@@ -101,6 +119,10 @@ TEST(Finding, AGainBelowWhatCountsIsNoEvidence) {
   ASSERT_TRUE(least_beaten(finding)->told());
   ASSERT_LT(finding.gain + least_beaten(finding)->margin, 0.02);
   EXPECT_EQ(finding.answer, Answer::no_evidence);
+  small.response = 200.0;  // 12 nats in all then count, 0.01 per sample
+  EXPECT_NEAR(small.judged().gains.front().least_gain, 0.01, 1e-15);
+  EXPECT_EQ(small.judged().answer, Answer::evidence);
+  small.response = 1.0;
   small.bank_gain = 0.117;  // gains of 0.012 to 0.022 over each competitor in the six runs
   for (Densities& competitor : small.competitors) {
     competitor = scores_of(competitor.filter, 0.1, 0.0);
@@ -127,29 +149,48 @@ TEST(Finding, AGainOfOneOddRunIsNoEvidence) {
   EXPECT_EQ(doubt_of(finding), Doubt::within_chance);
 }
 
-/// Two modes, used for 3/4 and 1/4 of the time. The first is left every 10th sample, the second every 2nd sample. The
-/// stay is 1 / (.75 / 10 + .25 / 2) = 5.
-TEST(Finding, ModesHaveToStayForFiveSamplesAndTheModelsMemory) {
-  Case passing;
-  passing.diagnostics.resize(2);
-  for (Eigen::Index mode = 0; mode < 2; ++mode) {
-    DiagnosticsRow& row = passing.diagnostics[mode];
-    row.filter = "bank";
-    row.role = Role::test;
-    row.mode = mode;
-    row.usage = mode == 0 ? 0.75 : 0.25;
-    row.dwell_model = mode == 0 ? 10.0 : 2.0;
-  }
-  EXPECT_NEAR(passing.judged().stay, 5.0, 1e-12);
-  EXPECT_EQ(passing.judged().stay_asked, 5.0);
-  passing.diagnostics[1].dwell_model = 1.9;
-  const Finding passes = passing.judged();
+/// A bank with these transitions and motions. Each mode is used for the same share of the judged runs.
+Case with_motions(const Eigen::MatrixXd& T, const std::vector<Eigen::Index>& motion) {
+  Case result;
+  result.bank = test::example_bank(1, 2, T.rows());
+  result.bank.transition = TransitionMatrix(T);
+  result.bank.motion = motion;
+  for (Eigen::Index mode = 0; mode < T.rows(); ++mode)
+    result.diagnostics.push_back({"bank", Role::test, mode, 0, 1.0 / static_cast<double>(T.rows())});
+  return result;
+}
+
+/// Two modes are left every 10th sample, a passage between them after s samples: the stay is 3 / (2 / 10 + 1 / s).
+TEST(Finding, MotionsHaveToStayForFiveSamplesAndTheModelsMemory) {
+  const auto judged = [](double s) {
+    const double left = 0.5 / s;
+    return with_motions(Eigen::Matrix3d{{0.9, 0.05, 0.05}, {0.05, 0.9, 0.05}, {left, left, 1.0 - 1.0 / s}}, {})
+        .judged();
+  };
+  EXPECT_NEAR(judged(2.5).stay, 5.0, 1e-12);
+  EXPECT_EQ(judged(2.5).stay_asked, 5.0);
+  EXPECT_EQ(judged(2.5).motions, 2);
+  const Finding passes = judged(2.4);
   EXPECT_EQ(passes.answer, Answer::cannot_tell);
   EXPECT_EQ(doubt_of(passes), Doubt::short_stays);
   EXPECT_EQ(passes.description, Description::none);
-  passing.diagnostics[1].dwell_model = 2.1;
-  EXPECT_EQ(passing.judged().answer, Answer::evidence);
-  EXPECT_EQ(passing.judged().description, Description::several_modes);
+  EXPECT_EQ(judged(2.6).answer, Answer::evidence);
+  EXPECT_EQ(judged(2.6).description, Description::several_modes);
+}
+
+/// Two noises of one motion change every second sample, the motions every 50th.
+TEST(Finding, StaysAndEvidenceCountMotions) {
+  const Eigen::Matrix3d T{{0.5, 0.48, 0.02}, {0.48, 0.5, 0.02}, {0.01, 0.01, 0.98}};
+  const Finding two = with_motions(T, {0, 0, 1}).judged();
+  EXPECT_NEAR(two.stay, 50.0, 1e-9);
+  EXPECT_EQ(two.motions, 2);
+  EXPECT_EQ(two.answer, Answer::evidence);
+  EXPECT_NEAR(with_motions(T, {}).judged().stay, 3.0 / (0.5 + 0.5 + 0.02), 1e-12);
+  const Finding one = with_motions(T, {0, 0, 0}).judged();
+  EXPECT_TRUE(std::isnan(one.stay)) << "never left";
+  EXPECT_EQ(one.motions, 1);
+  EXPECT_EQ(one.answer, Answer::one_mode);
+  EXPECT_EQ(one.description, Description::one_linear_motion);
 }
 
 TEST(Finding, OfSeveralThatAreAsGoodTheSimplestDescribesTheRuns) {
@@ -231,12 +272,7 @@ TEST(Finding, ACompetitorThatPredictsTheMeanBetterIsNamed) {
   for (const auto& [filter, rmse] : {std::pair{"bank", 0.02}, {"baseline", 0.03}, {"noise_only", 0.019}}) {
     worse.summary.push_back(pooled(filter, rmse));
     worse.horizons.push_back({filter, Role::test, "*", 10, 100, 0.0, VectorXd::Constant(1, 2.0 * rmse * rmse)});
-    FreeRunRow free_run;
-    free_run.filter = filter;
-    free_run.role = Role::test;
-    free_run.run = "*";
-    free_run.rmse = VectorXd::Constant(1, 10.0 * rmse);
-    worse.free_runs.push_back(free_run);
+    worse.free_runs.push_back({filter, Role::test, "*", 0, 100, 0.0, VectorXd::Constant(1, 10.0 * rmse)});
   }
   const std::vector<BetterMean> better = worse.judged().better_means;
   ASSERT_EQ(better.size(), 3U);

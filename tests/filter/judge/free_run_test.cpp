@@ -6,6 +6,7 @@
 
 #include "filter/judge/horizon.hpp"
 #include "filter/judge/scores.hpp"
+#include "ident/data/stretch.hpp"
 #include "tests/filter/drifting_test_support.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/filter/free_run_test_support.hpp"
@@ -21,7 +22,6 @@ using test::arx_bank;
 using test::example_bank;
 using test::near;
 using test::simulate_bank;
-using test::single_mode;
 using test::stable_theta;
 using test::with_paths;
 using ::testing::HasSubstr;
@@ -74,11 +74,7 @@ TEST(FreeRun, StartsAnewAfterAGapAndSaysWhereItCannot) {
   bank.dt_s = 1.0;
   Trajectory run = simulate_bank(bank, 30, 7);
   run.time_s.tail(18).array() += 2.0 * static_cast<double>(longest_gap_steps);
-  Trajectory tail = run;
-  tail.time_s = run.time_s.tail(18).eval();
-  tail.state = run.state.rightCols(18).eval();
-  tail.input = run.input.rightCols(18).eval();
-  const FreeRun all = free_run(bank, run, {}, after(5)), part = free_run(bank, tail, {}, after(5));
+  const FreeRun all = free_run(bank, run, {}, after(5)), part = free_run(bank, stretch(run, 12, 18), {}, after(5));
   EXPECT_TRUE(near(all.mean.rightCols(18), part.mean, 0.0));
   EXPECT_TRUE(std::isnan(all.mean(0, 16)) && !std::isnan(all.mean(0, 11)));
   const FreeRun little = free_run(bank, run, {}, after(15));
@@ -93,7 +89,7 @@ TEST(FreeRun, StartsAnewAfterAGapAndSaysWhereItCannot) {
 }
 
 TEST(FreeRun, PredictsThroughGapsAndMissingSamples) {
-  Bank bank = single_mode(example_bank(1, 1, 1), 0);
+  Bank bank = test::single_mode(example_bank(1, 1, 1), 0);
   bank.dt_s = 1.0;
   Trajectory run = simulate_bank(bank, 20, 8);
   run.time_s.tail(10).array() += 3.0;  // adds three model steps, with the input held
@@ -112,7 +108,7 @@ Bank two_modes() {
   bank.modes[1].model.A(0, 0) = 0.1;
   bank.modes[1].model.c(0) = 0.3;
   bank.modes[1].Q(0, 0) = 0.01;
-  bank.transition = TransitionMatrix((Eigen::Matrix2d() << 0.8, 0.2, 0.4, 0.6).finished());
+  bank.transition = TransitionMatrix(Eigen::Matrix2d{{0.8, 0.2}, {0.4, 0.6}});
   bank.initial_probability << 0.7, 0.3;
   return bank;
 }
@@ -180,12 +176,19 @@ TEST(FreeRun, SamplePathsAreDrawnFromAllSequencesOfModes) {
     EXPECT_NEAR(found.pit(0, k), exact.below(run.state(0, k), R), 5.0 * 0.5 / std::sqrt(static_cast<double>(paths)));
   }
   EXPECT_EQ(found.lost_paths, 0);
+  const auto mean = [&](std::uint64_t seed) {
+    FreeRunOptions options = after(1, 30);
+    options.seed = seed;
+    return Eigen::MatrixXd(free_run(with_paths(bank), run, {}, options).mean.rightCols(8));
+  };
+  EXPECT_EQ(mean(1), mean(1));
+  EXPECT_NE(mean(1), mean(2));
 }
 
 TEST(FreeRun, SaysOfPathsThatLeaveTheFiniteRange) {
   Bank bank = two_modes();
   bank.modes[1].model.A(0, 0) = 1e4;
-  bank.transition = TransitionMatrix((Eigen::Matrix2d() << 0.9, 0.1, 0.01, 0.99).finished());
+  bank.transition = TransitionMatrix(Eigen::Matrix2d{{0.9, 0.1}, {0.01, 0.99}});
   const Trajectory run = simulate_bank(two_modes(), 200, 6);
   const FreeRun found = free_run(with_paths(bank), run, {}, after(1, 50));
   EXPECT_EQ(found.lost_paths, 50);
@@ -225,11 +228,11 @@ TEST(FreeRun, ModesMayFollowStateAndInput) {
 TEST(FreeRunScores, HaveTheirClosedForms) {
   const double nan = std::nan("");
   std::vector<Trajectory> runs(2);
-  runs[0].state = (Eigen::RowVectorXd(5) << 9, 1, 2, 3, 4).finished();
+  runs[0].state = Eigen::RowVectorXd{{9, 1, 2, 3, 4}};
   runs[1].state = Eigen::RowVector2d(0, 10);
   std::vector<FreeRun> predicted(2);
-  predicted[0].mean = (Eigen::RowVectorXd(5) << nan, 1, 2, 3, 5).finished();
-  predicted[0].pit = (Eigen::RowVectorXd(5) << nan, 0.5, 0.2, 0.04, 0.999).finished();
+  predicted[0].mean = Eigen::RowVectorXd{{nan, 1, 2, 3, 5}};
+  predicted[0].pit = Eigen::RowVectorXd{{nan, 0.5, 0.2, 0.04, 0.999}};
   predicted[1].mean = Eigen::RowVector2d(nan, 8);
   predicted[1].pit = Eigen::RowVector2d(nan, 0.03);
   for (FreeRun& one : predicted) one.log_density = (one.mean.array() * 0.0 - 1.5).matrix().transpose();
@@ -262,6 +265,10 @@ TEST(FreeRun, MomentsAndPathsAgreeWithLagsAndSeveralStates) {
   const Trajectory run = any_run(s, 60);
   const FreeRun exact = free_run(bank, run, {}, after(20)),
                 drawn = free_run(with_paths(bank), run, {}, after(20, 10000));
+  const RunEvaluation filter = evaluate_run(bank, run, {});
+  EXPECT_TRUE(near(exact.mean.col(20), filter.prediction.col(20), 1e-12)) << "the first prediction is the filter's";
+  EXPECT_NEAR(exact.log_density(20), filter.log_density(20), 1e-10);
+  EXPECT_NEAR(exact.pit(0, 20), filter.pit(0, 20), 1e-10);
   const Eigen::ArrayXXd sd = exact.deviation.rightCols(40);
   EXPECT_LT(((drawn.mean - exact.mean).rightCols(40).array() / sd).abs().maxCoeff(), 0.06);
   EXPECT_LT((drawn.deviation.rightCols(40).array() / sd - 1.0).abs().maxCoeff(), 0.05);

@@ -5,6 +5,7 @@
 
 #include "filter/judge/evaluate.hpp"
 #include "filter/step/samples.hpp"
+#include "ident/data/stretch.hpp"
 #include "tests/filter/filter_test_support.hpp"
 
 namespace modebank {
@@ -59,12 +60,9 @@ TEST(ModeSequence, IsTheBestOfAllSequencesWhenTheStateIsMeasuredExactly) {
 TEST(ModeSequence, BeginsAnewWhereTheFilterStartsAnew) {
   Bank bank = example_bank(1, 1, 2);
   bank.dt_s = 1.0;
-  Trajectory run = simulate_bank(bank, 30, 22), head = run;
-  head.time_s = run.time_s.head(12).eval();
-  head.state = run.state.leftCols(12).eval();
-  head.input = run.input.leftCols(12).eval();
+  Trajectory run = simulate_bank(bank, 30, 22);
   run.time_s.tail(18).array() += 2 * longest_gap_steps;
-  EXPECT_EQ(mode_sequence(bank, run, {}).head(12), mode_sequence(bank, head, {}));
+  EXPECT_EQ(mode_sequence(bank, run, {}).head(12), mode_sequence(bank, stretch(run, 0, 12), {}));
   run.state(0, 0) = std::nan("");  // the filter starts at the next sample
   Eigen::VectorXi of_one_mode = Eigen::VectorXi::Zero(30);
   of_one_mode(0) = -1;

@@ -78,6 +78,8 @@ TEST(PairedGain, BlocksAreRankedToo) {
   EXPECT_TRUE(gain.told());
   run.head(3000).array() -= 2.0;
   EXPECT_GT(gain_of({run}).rank_p, 0.9);
+  EXPECT_TRUE(std::isnan(gain_of({run.head(14)}).margin)) << "too few blocks know no error";
+  EXPECT_TRUE(std::isnan(gain_of({VectorXd::Constant(4, not_a_number)}).gain));
 }
 
 // If two filters are equally good, a gain is significant in 2.5 % of the cases: 25 of 1000, with binomial sd 4.9.

@@ -4,8 +4,7 @@
 #include <cmath>
 
 #include "modebank/base/error.hpp"
-#include "tests/filter/filter_test_support.hpp"
-#include "tests/filter/learn/learn_test_support.hpp"
+#include "tests/filter/learn/refine_recovery.hpp"
 #include "tests/support/matrix_compare.hpp"
 
 namespace modebank {
@@ -20,15 +19,6 @@ Bank single_filter(double a, double q, double r) {
   bank.modes[0].model.B(0, 0) = 0.5;
   bank.modes[0].Q(0, 0) = q;
   return bank;
-}
-
-Recording simulated(const Bank& bank, Index runs, Index samples) {
-  Recording recording = test::empty_recording(bank.structure.states, bank.structure.inputs);
-  for (Index i = 0; i < runs; ++i) {
-    const Trajectory run = test::simulate_bank(bank, samples, 100 + static_cast<std::uint64_t>(i));
-    test::add_run(recording, run.state, run.input);
-  }
-  return recording;
 }
 
 GlobalModel model_of(const Recording& recording) { return fit_global(recording, test::structure_of(recording)); }
@@ -47,7 +37,7 @@ double likelihood_at(Bank bank, const Recording& recording, const Eigen::MatrixX
 
 TEST(Baseline, NoGridPointIsMoreLikely) {
   for (const auto& [q, r] : {std::pair{0.04, 0.01}, std::pair{0.001, 0.05}, std::pair{0.04, 1e-5}}) {
-    const Recording recording = simulated(single_filter(-0.2, q, r), 2, 200);
+    const Recording recording = test::simulated_recording(single_filter(-0.2, q, r), 2, 200, 1);
     const Baseline fit = learn(recording, model_of(recording));
     EXPECT_TRUE(fit.converged);
     // At the bound, a loss of 1e-7 per sample is allowed.
@@ -65,7 +55,7 @@ TEST(Baseline, NoChangeOfTwoStatesNoiseIsMoreLikely) {
   Bank truth = test::single_mode(test::example_bank(2, 1, 1, 0.02), 0);
   truth.structure.intercept = false;
   truth.modes[0].Q << 0.08, 0.02, 0.02, 0.05;
-  const Recording recording = simulated(truth, 4, 500);
+  const Recording recording = test::simulated_recording(truth, 4, 500, 1);
   GlobalModel global = model_of(recording);
   global.theta = truth.theta(0);
   const Baseline fit = learn(recording, global);
@@ -84,7 +74,7 @@ TEST(Baseline, NoChangeOfTwoStatesNoiseIsMoreLikely) {
 }
 
 TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
-  const Recording recording = simulated(single_filter(-0.3, 0.04, 1e-30), 3, 400);
+  const Recording recording = test::simulated_recording(single_filter(-0.3, 0.04, 1e-30), 3, 400, 1);
   const LinearStructure structure{1, 1, false, 2};
   // Measurement noise makes successive errors negatively correlated. If theta forgets too fast, the correlation is
   // positive.
@@ -99,7 +89,7 @@ TEST(Baseline, WithoutMeasurementNoiseStopsAtTheBound) {
 }
 
 TEST(Baseline, OfDifferencesHasAPoleAtOneAndTheirAnswer) {
-  Recording recording = simulated(single_filter(-0.3, 0.04, 0.01), 1, 30);
+  Recording recording = test::simulated_recording(single_filter(-0.3, 0.04, 0.01), 1, 30, 1);
   const Eigen::MatrixXd one = Eigen::MatrixXd::Ones(1, 1);
   ArmaxFit fit{{{true, 1, 2, 1}, {3}}, Eigen::RowVector3d(0.9, 0.05, 0.01), -0.5 * one, one, {}, 1000};
   fit.covariance = Eigen::Matrix4d::Identity();

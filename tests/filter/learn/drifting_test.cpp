@@ -74,6 +74,28 @@ TEST(DriftingLearning, TheGridScoresWhatTheFilterScores) {
   }
 }
 
+TEST(DriftingLearning, NoOtherFactorMakesAHorizonMoreLikelyAndHeldOutRunsDoNotMatter) {
+  const Bank truth = example_drifting(2, 1, 2);
+  Recording recording = drifting_recording(truth, 2, 300);
+  const Bank model = learned(recording, truth.structure);
+  const auto score = [&](const Bank& of) {
+    double sum = 0.0;
+    for (const std::size_t i : {0u, 1u}) {
+      const Eigen::ArrayXXd densities = evaluate_horizons(of, recording.runs[i], {}, {1, 2, 5}).log_density;
+      sum += densities.isNaN().select(0.0, densities).sum();
+    }
+    return sum;
+  };
+  for (const std::size_t h : {0u, 1u})  // of 2 and 5: at 1 it is the filter's own
+    for (const double change : {std::exp2(-0.25), std::exp2(0.25), 0.25, 4.0}) {
+      Bank other = model;
+      other.running_noise.horizon_factor.at(h).second *= change;
+      EXPECT_GT(score(model), score(other)) << h << ", " << change;
+    }
+  test::add_run(recording, 9.0 * recording.runs[0].state, recording.runs[0].input, Role::test);
+  EXPECT_EQ(score(learned(recording, truth.structure)), score(model));
+}
+
 /// x[k+1] = x[k] / 2 + u[k] + e, where the standard deviation of e switches between 0.05 and 1. The variance of the
 /// last samples follows such noise too late.
 TEST(DriftingLearning, TakesTheNoiseLevelsOfOneMotionWhereTheyGain) {

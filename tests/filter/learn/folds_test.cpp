@@ -68,8 +68,13 @@ TEST(LearningPart, IsMadeOfWholeStretchesOfTheTrainingRuns) {
   }
 }
 
-TEST(LearningPart, HasEveryRunInProportionToItsLength) {
-  const Recording part = learning_part(numbered({50000, 100000, 250000}), 40000, 3).value();
+TEST(LearningPart, HasEveryRunInProportionToItsLengthAndDependsOnTheSeed) {
+  const auto drawn_by = [](std::uint64_t seed) {
+    return learning_part(numbered({50000, 100000, 250000}), 40000, seed).value();
+  };
+  const Recording part = drawn_by(3);
+  EXPECT_EQ(drawn_by(3).runs[0].state, part.runs[0].state);
+  EXPECT_NE(drawn_by(4).runs[0].state, part.runs[0].state);
   std::map<Index, Index> drawn;
   for (const Trajectory& run : part.runs) drawn[static_cast<Index>(run.state(0, 0) / 1e6)] += run.transitions();
   const double two_stretches = 800.0;  // a stretch is a hundredth of the drawn transitions

@@ -51,17 +51,6 @@ Recording simulated_runs(Index runs, Index samples, std::uint64_t seed, Next nex
   return recording;
 }
 
-/// The training runs of a golden file, x and u one sample per row.
-inline Recording golden_recording(const nlohmann::json& runs) {
-  Recording recording;
-  for (const nlohmann::json& run : runs) {
-    const Eigen::MatrixXd x = golden_columns(run.at("x")), u = golden_columns(run.at("u"));
-    if (recording.runs.empty()) recording = empty_recording(x.rows(), u.rows());
-    add_run(recording, x, u);
-  }
-  return recording;
-}
-
 inline LinearStructure structure_of(const Recording& recording) {
   return {recording.state_count(), recording.input_count(), false};
 }

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <limits>
 
 #include "filter/judge/evaluate.hpp"
+#include "filter/learn/likelihood/maximum_likelihood.hpp"
 #include "filter/learn/refine/cross_validation.hpp"
 #include "tests/filter/learn/refine_recovery.hpp"
 
@@ -31,6 +31,11 @@ TEST_P(RefineRounded, FindsNoiseBesideRounding) {
   EXPECT_GT(found.measurement.iterations, 0);
   for (const double z : test::z_values(found.bank, truth)) EXPECT_LT(std::abs(z), 3.0);
   EXPECT_LT(found.bank.R_standard_error(0, 0), 0.3 * truth.R(0, 0));
+  EXPECT_LT(found.bank.transition_standard_error.maxCoeff(), 0.03);
+  for (const Mode& mode : found.bank.modes) {
+    EXPECT_LT(mode.standard_error.maxCoeff(), 0.2);  // inputs have a standard deviation of 0.29
+    EXPECT_LT(mode.Q_standard_error(0, 0), 0.3 * mode.Q(0, 0));
+  }
 }
 
 /// Rounding alone must give no R beside its own.
@@ -38,7 +43,6 @@ TEST_P(RefineRounded, TakesRoundingForNoNoise) {
   const double quantum = 0.2;
   truth.R.setZero();
   const Refinement found = refined(quantum);
-  EXPECT_GT(found.measurement.starts, 0);
   EXPECT_GT(found.measurement.iterations, 0);
   EXPECT_GE(found.bank.R(0, 0), quantum * quantum / 12.0);
   EXPECT_LT(found.bank.R(0, 0), 1.1 * quantum * quantum / 12.0);
@@ -69,20 +73,26 @@ Bank one_mode(double Q, double R) {
 
 Recording one_mode_with(double R) { return test::simulated_recording(one_mode(Q_true, R), 12, 800, 23); }
 
-/// Searches R in these runs, from a bank.
-class SearchOfR {
- public:
-  SearchOfR(const Recording& runs, const Bank& bank, Index folds = 1) : recording(runs), start(bank) {
-    options.folds = folds;
+/// R must be found for every ratio of R to Q, and none where the data show none.
+TEST(RefineMeasured, SplitsQAndR) {
+  for (const double R : {0.0, 0.005, 0.02, 0.2}) {
+    const Recording recording = one_mode_with(R);
+    const RefineOptions options{.restarts = 0, .folds = 1};
+    const Bank bank =
+        refine_bank(recording, test::windows_of(recording, 25, 1), {one_mode(Q_true, R)}, options, {}).bank;
+    EXPECT_NEAR(bank.R(0, 0), R, 0.2 * R + 0.003) << R;
+    EXPECT_NEAR(bank.modes[0].Q(0, 0), Q_true, 0.2 * Q_true) << R;
+    EXPECT_NEAR(bank.theta(0)(0), -0.2, 0.05) << "exact states would hide R in theta";
   }
-  MeasurementNoise found() const { return find_measurement_noise(in, in.all, in.prior(exact, in.all), start); }
-  /// The fit of exact states, chosen by left-out runs.
-  Fit given(CrossValidation& validation) const {
-    validation.consider({exact});
-    Fit fit = validation.chosen();
-    fit.bank = start;
-    fit.prior = in.prior(exact, in.all);
-    return fit;
+}
+
+/// Inputs of a refinement with unknown states.
+class Measured {
+ public:
+  Measured(const Recording& runs, const Bank& bank, Index folds) : recording(runs), start(bank) {
+    options.folds = folds;
+    in.single.R = Eigen::VectorXd::Constant(1, 0.02);
+    in.unknown_states = true;
   }
 
   const Recording& recording;
@@ -90,52 +100,28 @@ class SearchOfR {
   WindowFits fits = test::windows_of(recording, 25, 1);
   RefineOptions options;
   FilterOptions filter;
-  BankCandidate exact{"", switching_model(start), 4.0};
+  BankCandidate exact{"", switching_model(start)};
   RefineInput in{
-      fits, options, filter, {recording, start, gather_training_transitions(recording, start.structure), fits.global}};
+      fits, options, filter, {recording, gather_training_transitions(recording, start.structure), fits.global}, start};
 };
 
-/// R must be found for every ratio of R to Q, and none where the data show none.
-TEST(FindMeasurementNoise, SplitsQAndR) {
-  EXPECT_FALSE(SearchOfR(one_mode_with(0.0), one_mode(Q_true, 1e-9)).found().bank);
-  for (const double R : {0.005, 0.02, 0.2}) {
-    const std::optional<Bank> bank = SearchOfR(one_mode_with(R), one_mode(Q_true + 2.0 * R, 1e-9)).found().bank;
-    ASSERT_TRUE(bank) << R;
-    EXPECT_NEAR(bank->R(0, 0), R, 0.2 * R + 0.003) << R;
-    EXPECT_NEAR(bank->modes[0].Q(0, 0), Q_true, 0.2 * Q_true) << R;
+/// At R = 0 candidates are scored by the switching regression, whose likelihood of complete transitions is the
+/// filter's. If a split leaves out none, the filter scores.
+TEST(CrossValidation, ScoresAreTheFilters) {
+  const Bank truth = test::true_three();
+  Recording recording = test::simulated_recording(truth, 4, 150, 3);
+  recording.runs.push_back(test::simulated_recording(truth, 1, 260, 4).runs.front());
+  for (const Index folds : {3, 5}) {
+    for (Index k = 0; folds == 5 && k < 150; k += 2) recording.runs[0].state(k) = std::nan("");
+    Measured search(recording, truth, folds);
+    search.in.unknown_states = false;
+    CrossValidation validation(search.in);
+    validation.consider({search.exact});
+    const Fit& chosen = validation.chosen();
+    EXPECT_EQ(validation.samples().sum(), 4.0 * 149.0 + 259.0);
+    const LeftOutScores expected = validation.scores(chosen.of_splits);
+    EXPECT_TRUE(test::near(chosen.scores.log_likelihood, expected.log_likelihood, folds == 3 ? 1e-5 : 0.0)) << folds;
   }
-}
-
-TEST(FindMeasurementNoise, StartsThatFailAreCounted) {
-  const Recording recording = one_mode_with(0.02);
-  SearchOfR search(recording, one_mode(Q_true + 0.04, 1e-9));
-  EXPECT_EQ(search.found().failed_starts, 0);
-  search.start.modes[0].Q *= std::numeric_limits<double>::infinity();
-  EXPECT_EQ(search.found().failed_starts, 2);
-  EXPECT_FALSE(search.found().bank);
-}
-
-/// Regression test: with the theta of exact states, R = 0 was most likely, with a loss of 0.12 nats.
-TEST(FindMeasurementNoise, FindsRThatThetaHides) {
-  const Bank truth = one_mode(0.01, 0.01);
-  const Recording recording = test::simulated_recording(truth, 4, 800, 5);
-  const TrainingTransitions transitions = gather_training_transitions(recording, truth.structure);
-  const Eigen::VectorXd theta = truth.theta(0) - Eigen::Vector2d(0.4, 0.0);
-  const Eigen::VectorXd residual = transitions.data.increments - transitions.data.regressors * theta;
-  Bank drawn = one_mode(residual.squaredNorm() / static_cast<double>(residual.size()), 1e-9);
-  drawn.modes[0].model = unpack(truth.structure, theta);
-  const std::optional<Bank> bank = SearchOfR(recording, drawn).found().bank;
-  ASSERT_TRUE(bank);
-  EXPECT_NEAR(bank->R(0, 0), truth.R(0, 0), 0.2 * truth.R(0, 0));
-  EXPECT_NEAR(bank->theta(0)(0), truth.theta(0)(0), 0.05);
-}
-
-/// If the splits find no R, scores of left-out runs cannot test the R of all training runs.
-TEST(MostlyHave, NeedsHalfOfTheSplitsToHaveAnROfItsSize) {
-  const auto share = [](double R) { return one_mode(Q_true, R); };
-  const Eigen::MatrixXd R = Eigen::MatrixXd::Constant(1, 1, 1e-4);
-  EXPECT_TRUE(mostly_have({share(1e-4), share(2e-5), share(1e-6), share(0.0)}, R));
-  EXPECT_FALSE(mostly_have({share(1e-4), share(1e-6), share(1e-6), share(0.0)}, R));
 }
 
 /// No part of a fit, including R, may use the runs that are scored with it. Here the last run has twenty times
@@ -144,32 +130,20 @@ TEST(RefineMeasured, ScoresAreOfFitsThatLeaveTheRunOut) {
   Recording recording = one_mode_with(0.02);
   recording.runs.push_back(one_mode_with(0.4).runs.front());
   recording.runs.back().run = "worse";
-  const SearchOfR search(recording, one_mode(0.1, 1e-9), 4);
+  const Measured search(recording, one_mode(0.1, 1e-9), 4);
   CrossValidation validation(search.in);
-  const Fit given = search.given(validation);
-  MeasurementStage stage;
-  EXPECT_TRUE(fit_with_measurement_noise(search.in, validation, given, stage).R_estimated);
+  validation.consider("one", maximise_measured(search.in, search.in.all, with_R_out_of_Q(search.in, search.start), 20));
   Eigen::Vector4d R;
   double expected = 0.0;
+  Bank start = validation.chosen().learned.bank;
+  start.R.setConstant(0.02);
   for (std::size_t s = 0; s < 4; ++s) {
-    const LearningRuns& runs = validation.learning()[s];
-    const SwitchingPrior prior = search.in.prior(given.candidate, runs);
-    const Bank bank = find_measurement_noise(search.in, runs, prior, given.of_splits[s]).bank.value();
+    const Bank bank = maximise_measured(search.in, validation.learning()[s], start, 20).bank;
     R(static_cast<Index>(s)) = bank.R(0, 0);
     for (const Trajectory& run : validation.splits()[s].left_out.runs) expected += log_likelihood(bank, run, {});
   }
   EXPECT_LT(R.minCoeff(), 0.5 * R.maxCoeff());
-  EXPECT_NEAR(stage.score, expected / validation.samples().sum(), 1e-9);
-}
-
-TEST(RefineMeasured, NothingIsTakenWhereScoresAreNotNumbers) {
-  const Recording recording = one_mode_with(0.02);
-  const SearchOfR search(recording, one_mode(Q_true + 0.04, 1e-9), 3);
-  CrossValidation validation(search.in);
-  Fit given = search.given(validation);
-  for (Bank& bank : given.of_splits) bank.modes[0].Q.setConstant(std::nan(""));
-  MeasurementStage stage;
-  EXPECT_FALSE(fit_with_measurement_noise(search.in, validation, given, stage).R_estimated);
+  EXPECT_NEAR(validation.chosen().scores.log_likelihood.sum(), expected, 1e-6);
 }
 
 }  // namespace

@@ -107,18 +107,20 @@ struct Clustered {
 };
 
 TEST(ClusterWindows, OfManyLagsAreThoseOfOneLagFits) {
-  const Clustered c(CovarianceType::diagonal);
-  EXPECT_THAT(c.mixture.feature_names, ::testing::ElementsAre("A", "B1", "B2", "log_noise_variance_x0"));
-  ASSERT_EQ(c.mixture.features.cols(), c.fits.count());
-  EXPECT_TRUE(near(c.mixture.features.topRows(3), fit_one_lag(c.recording, c.fits, many_lags()).parameters, 0.0));
-  for (Index k = 0; k < 2; ++k) {
-    const bool second = c.mixture.mixture.means(0, k) < -0.4;
-    EXPECT_NEAR(c.mixture.mixture.means(0, k), second ? -0.6 : -0.2, 0.02) << "A is the increment's";
-    EXPECT_NEAR(c.mixture.mixture.means(2, k), second ? 0.6 : 0.2, 0.02);
+  for (const CovarianceType covariance : {CovarianceType::full, CovarianceType::diagonal}) {
+    const Clustered c(covariance);
+    const Eigen::MatrixXd& means = c.mixture.mixture.means;
+    EXPECT_THAT(c.mixture.feature_names, ::testing::ElementsAre("A", "B1", "B2", "log_noise_variance_x0"));
+    ASSERT_EQ(c.mixture.features.cols(), c.fits.count());
+    EXPECT_TRUE(near(c.mixture.features.topRows(3), fit_one_lag(c.recording, c.fits, many_lags()).parameters, 0.0));
+    for (Index k = 0; k < 2; ++k) {
+      const bool second = means(0, k) < -0.4;
+      EXPECT_NEAR(means(0, k), second ? -0.6 : -0.2, 0.02) << "A is the increment's";
+      EXPECT_NEAR(means(2, k), second ? 0.6 : 0.2, 0.02);
+    }
+    for (Index i = 0; i < c.fits.count(); ++i)
+      EXPECT_EQ(c.mixture.labels(i) >= 0 && means(0, c.mixture.labels(i)) < -0.4, c.fits.windows[i].run % 2 == 1);
   }
-  for (Index i = 0; i < c.fits.count(); ++i)
-    EXPECT_EQ(c.mixture.labels(i) >= 0 && c.mixture.mixture.means(0, c.mixture.labels(i)) < -0.4,
-              c.fits.windows[i].run % 2 == 1);
 }
 
 /// A mode's coefficients are the pooled regression of its runs with all lags. Its parameter covariance is that of its

@@ -12,9 +12,11 @@ namespace {
 TEST(NoiseOnly, StayIsTheMostLikelyOneOfTheTrainingRuns) {
   for (const char* size : {"scalar", "vector"}) {
     const nlohmann::json golden = test::read_golden("learn_noise_only").at(size);
-    Recording recording = test::golden_recording(golden.at("runs"));
-    const LinearStructure structure = test::structure_of(recording);
     const Eigen::MatrixXd R = test::golden_rows(golden.at("R"));
+    const auto columns = [](const auto& run, const char* name) { return test::golden_columns(run.at(name)); };
+    Recording recording = test::empty_recording(R.rows(), columns(golden.at("runs")[0], "u").rows());
+    for (const auto& run : golden.at("runs")) test::add_run(recording, columns(run, "x"), columns(run, "u"));
+    const LinearStructure structure = test::structure_of(recording);
     const Bank bank = learn_noise_only(recording, structure, R);
     EXPECT_NEAR(bank.transition.matrix()(0, 0), golden.at("stay").get<double>(), 1e-10);
     EXPECT_TRUE(test::near(bank.R, R, 0.0));

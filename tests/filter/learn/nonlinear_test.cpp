@@ -6,6 +6,7 @@
 #include "filter/judge/evaluate.hpp"
 #include "filter/judge/horizon.hpp"
 #include "filter/step/bank_filter.hpp"
+#include "ident/data/stretch.hpp"
 #include "tests/filter/free_run_test_support.hpp"
 #include "tests/filter/learn/learn_test_support.hpp"
 
@@ -67,13 +68,15 @@ TEST(BankWithTerms, PredictsByItsFunction) {
 TEST(BankWithTerms, FreeRunsFollowTheFunctionAndItsSlope) {
   const Bent bent;
   const Trajectory run = bent.runs(1, 2).runs.front();
-  const FreeRun said = free_run(bent.bank(), run, {}, test::after(5));
+  const FreeRun said = free_run(bent.bank(), run, {}, test::after(5)),
+                paths = free_run(test::with_paths(bent.bank()), stretch(run, 0, 25), {}, test::after(5, 4000));
   double x = run.state(0, 4), variance = 0.0;
   for (Index k = 5; k < 25; ++k) {
     variance = std::pow(0.8 - 0.2 * x, 2) * variance + bent.sd * bent.sd;
     x = bent.next(x, run.input(0, k - 1));
     ASSERT_NEAR(said.mean(0, k), x, 1e-12);
     ASSERT_NEAR(said.deviation(0, k), std::sqrt(variance), 1e-12);
+    EXPECT_NEAR(paths.mean(0, k), x, 5.0 * std::sqrt(variance) / 60.0);
   }
 }
 

@@ -82,20 +82,29 @@ inline Refinement refine_blurred(const Bank& truth, const Recording& recording, 
   return refine_bank(recording, windows_of(recording, 25, 1), {blurred(truth, recording)}, options, {});
 }
 
+/// The mode of the bank whose theta is nearest.
+inline Index nearest_mode(const Bank& bank, const Eigen::VectorXd& theta) {
+  Index nearest = 0;
+  for (Index j = 1; j < bank.mode_count(); ++j)
+    if ((bank.theta(j) - theta).norm() < (bank.theta(nearest) - theta).norm()) nearest = j;
+  return nearest;
+}
+
 /// Errors of all learned parameters in standard errors: theta, Q (lower triangles), R if learned, T's diagonal.
 inline std::vector<double> z_values(const Bank& bank, const Bank& truth) {
   std::vector<double> z;
   const Index n = truth.structure.states;
   for (Index j = 0; j < truth.mode_count(); ++j) {
-    const Mode& mode = bank.modes[j];
+    const Index k = nearest_mode(bank, truth.theta(j));
+    const Mode& mode = bank.modes[k];
     const Mode& right = truth.modes[j];
     for (Index a = 0; a < truth.structure.parameters(); ++a)
-      z.push_back((bank.theta(j)(a) - truth.theta(j)(a)) / mode.standard_error(a));
+      z.push_back((bank.theta(k)(a) - truth.theta(j)(a)) / mode.standard_error(a));
     for (Index b = 0; b < n; ++b)
       for (Index a = b; a < n; ++a) z.push_back((mode.Q(a, b) - right.Q(a, b)) / mode.Q_standard_error(a, b));
     if (truth.mode_count() > 1)
-      z.push_back((bank.transition.matrix()(j, j) - truth.transition.matrix()(j, j)) /
-                  bank.transition_standard_error(j, j));
+      z.push_back((bank.transition.matrix()(k, k) - truth.transition.matrix()(j, j)) /
+                  bank.transition_standard_error(k, k));
   }
   for (Index i = 0; i < bank.R_standard_error.rows(); ++i)
     z.push_back((bank.R(i, i) - truth.R(i, i)) / bank.R_standard_error(i, i));

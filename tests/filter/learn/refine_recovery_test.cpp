@@ -13,7 +13,7 @@ using test::simulated_recording;
 
 FreeParameters everything(Bank bank, double theta_unit) {
   for (Mode& mode : bank.modes) mode.standard_error.setConstant(bank.structure.parameters(), theta_unit);
-  return all_parameters(bank, false, true, Eigen::VectorXd::Zero(bank.R.rows()));
+  return all_parameters(bank, true, Eigen::VectorXd::Zero(bank.R.rows()));
 }
 
 /// At a maximum no step in either direction gains.

@@ -4,6 +4,9 @@
 #include <gmock/gmock.h>
 #include <tbb/global_control.h>
 
+#include <algorithm>
+#include <limits>
+
 #include "tests/filter/learn/refine_recovery.hpp"
 
 namespace modebank {
@@ -56,14 +59,28 @@ TEST_F(Refine, ChoiceRestsOnTrainingRunsAloneForAnyNumberOfThreads) {
   ASSERT_EQ(alone.bank.mode_count(), other.bank.mode_count());
   for (Index j = 0; j < alone.bank.mode_count(); ++j) EXPECT_EQ(alone.bank.theta(j), other.bank.theta(j));
   EXPECT_EQ(alone.bank.transition.matrix(), other.bank.transition.matrix());
-  const auto selected = [](const RefineCandidate& row) { return row.selected; };
-  EXPECT_EQ(std::count_if(alone.candidates.begin(), alone.candidates.end(), selected), 1);
+  const double best = std::ranges::max(alone.candidates, {}, &RefineCandidate::score).score;
+  for (const RefineCandidate& row : alone.candidates) EXPECT_NEAR(row.loss, best - row.score, 1e-12);
+  EXPECT_EQ(std::ranges::count_if(alone.candidates, &RefineCandidate::selected), 1);
+}
+
+TEST_F(Refine, IterationsGoOnWhereLeftOutRunsGain) {
+  const Recording recording = test::simulated_recording(truth, 3, 120, 17);
+  options.folds = 3;
+  double before = -std::numeric_limits<double>::infinity();
+  for (const Index limit : {0, 10, 100}) {
+    options.max_iterations = limit;
+    const RefineCandidate row = refined(recording, {0.3, -0.3, 0.2}).candidates.front();
+    EXPECT_GT(row.score, before) << limit;
+    EXPECT_LE(row.iterations, limit);
+    before = row.score;
+  }
 }
 
 /// The competitor with one motion.
 TEST_F(Refine, OneThetaIsThatOfAllModes) {
   for (Mode& mode : truth.modes) mode.model = truth.modes[0].model;
-  options.one_theta = true;
+  truth.motion.assign(3, 0);
   const Bank bank = refined(test::simulated_recording(truth, 4, 400, 17), {0.3, -0.3, 0.2}).bank;
   ASSERT_GT(bank.mode_count(), 1);
   for (Index j = 0; j < bank.mode_count(); ++j) {
@@ -72,14 +89,6 @@ TEST_F(Refine, OneThetaIsThatOfAllModes) {
     EXPECT_EQ(mode.standard_error, bank.modes[0].standard_error);
     EXPECT_TRUE(((bank.theta(j) - truth.theta(0)).array().abs() < 3.0 * mode.standard_error.array()).all());
   }
-}
-
-/// Without folds no score can decide whether a stronger prior on Q gains.
-TEST_F(Refine, WithoutAnythingToLeaveOutThePriorIsWorthOneTransition) {
-  options.folds = 6;
-  const Refinement found = refined(test::simulated_recording(truth, 1, 30, 17));
-  ASSERT_EQ(found.candidates.size(), 1u);
-  EXPECT_EQ(found.candidates[0].noise_transitions, 1.0);
 }
 
 TEST_F(Refine, MotionModelsAreRefused) {

@@ -16,8 +16,8 @@ Bank with_errors(const Bank& bank, const Recording& recording, const Recording& 
   const SwitchingPrior prior = switching_prior(transitions, fit_global(recording, bank.structure), {}, 1.0);
   const Bank complete =
       with_complete_errors(transitions, smooth_modes(transitions, switching_model(bank)), prior, bank);
-  return with_standard_errors({of, {}, prior},
-                              all_parameters(complete, false, bank.R(0, 0) > 0.0, Eigen::VectorXd::Zero(1)), complete);
+  return with_standard_errors({of, {}, prior}, all_parameters(complete, bank.R(0, 0) > 0.0, Eigen::VectorXd::Zero(1)),
+                              complete);
 }
 
 /// A filter that ignores times makes one step at every gap.

@@ -1,5 +1,6 @@
 // The lags that are chosen for modes on left-out runs, for systems with known structure.
 #include <gmock/gmock.h>
+#include <tbb/global_control.h>
 
 #include <limits>
 
@@ -65,6 +66,8 @@ TEST(StructureScore, IsTheLogDensityOfRunsLeftOut) {
   const double truth = -0.5 * (std::log(2.0 * 3.14159265358979) + 1.0 + std::log(0.01) + std::log(0.1));
   EXPECT_LT(compared.scores[0], truth + 0.02);
   EXPECT_GT(compared.scores[0], truth - 0.1);
+  const tbb::global_control single(tbb::global_control::max_allowed_parallelism, 1);
+  EXPECT_EQ(compare_structures(second_order(5), {lags(2, 1)}, 0, true, 1).scores, compared.scores);
 }
 
 TEST(StructureScore, KeepsTheIncumbentWhereNothingCanBeLeftOut) {

@@ -105,16 +105,20 @@ TEST(SwitchingRegression, LikelihoodIsTheFiltersWithoutMeasurementNoise) {
 TEST(SwitchingRegression, EveryIterationRaisesTheObjective) {
   const Recording recording = noisy_runs(2, {150, 90, 60}, 1.0);
   const TrainingTransitions t = gather_training_transitions(recording, test::structure_of(recording));
-  for (const bool one_theta : {false, true}) {
-    SwitchingRegression model = two_modes(t.structure);
-    if (one_theta) model.theta.col(1) = model.theta.col(0);
-    SwitchingFit fit{model};
-    iterate(t, switching_prior(t, fit_global(recording, t.structure), {}, 4.0), {one_theta}, 40, fit);
+  for (const Index levels : {0, 1, 2}) {  // free modes; of one motion; of one motion whose Q differ by a factor
+    SwitchingFit fit{two_modes(t.structure)};
+    if (levels > 0) fit.model.theta.col(1) = fit.model.theta.col(0);
+    if (levels > 0) fit.model.motion = {0, 0};
+    if (levels > 1) fit.model.Q[1] = 3.0 * fit.model.Q[0];
+    fit.model.noise_levels = std::max<Index>(levels, 1);
+    iterate(t, switching_prior(t, fit_global(recording, t.structure), {}, 4.0), {}, 40, fit);
     const std::vector<double>& objective = fit.objective;
     for (std::size_t i = 1; i < objective.size(); ++i)
       EXPECT_GE(objective[i], objective[i - 1] - 1e-9 * std::abs(objective[i - 1])) << "iteration " << i;
     EXPECT_GT(objective.back(), objective.front() + 10.0);
-    EXPECT_EQ(fit.model.theta.col(0) == fit.model.theta.col(1), one_theta);
+    EXPECT_EQ(fit.model.theta.col(0) == fit.model.theta.col(1), levels > 0);
+    const double factor = fit.model.Q[1](0, 0) / fit.model.Q[0](0, 0);
+    EXPECT_EQ(test::near(fit.model.Q[1], factor * fit.model.Q[0], 1e-9), levels > 1);
   }
 }
 
@@ -154,10 +158,10 @@ TEST(SwitchingRegression, OneModeIsTheGlobalModelAndNotDefiniteNoiseIsSaidToBe) 
   const SwitchingRegression best = maximise(t, posterior, none, {}, model);
   EXPECT_TRUE(near(best.theta, global.theta, 1e-10));
   EXPECT_TRUE(near(best.Q[0], global.residual_covariance, 1e-10));
-  EXPECT_TRUE(std::isfinite(log_prior(prior, false, model)));
+  EXPECT_TRUE(std::isfinite(log_prior(prior, model)));
   EXPECT_TRUE(errors().allFinite());
   model.Q.front() *= -1.0;
-  EXPECT_EQ(log_prior(prior, false, model), -std::numeric_limits<double>::infinity());
+  EXPECT_EQ(log_prior(prior, model), -std::numeric_limits<double>::infinity());
   EXPECT_TRUE(errors().array().isNaN().all());
   model.theta.setConstant(0.25);
   EXPECT_EQ(maximise(t, posterior, prior, {.alternations = 1}, model).theta, model.theta);

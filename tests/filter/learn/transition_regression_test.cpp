@@ -64,7 +64,7 @@ Bank bank_of(const Recording& recording, const SwitchingRegression& model) {
 }
 
 TEST(TransitionLogit, IsTheLogisticFunctionForTwoModesAndTWhereTheStateIsNotKnown) {
-  const auto [theta, Q, T, initial, logit] = true_model(soft);
+  const auto [theta, Q, T, initial, logit, motion, levels] = true_model(soft);
   TransitionWorkspace at(2, logit);
   const Eigen::VectorXd x = Eigen::VectorXd::Ones(1);
   EXPECT_EQ(transition_at(T, logit, x, std::nan("") * x, at), T);

@@ -6,10 +6,10 @@
 #include <Eigen/Dense>
 #include <cmath>
 #include <functional>
-#include <numeric>
 #include <stdexcept>
 
 #include "filter/judge/evaluate.hpp"
+#include "ident/data/stretch.hpp"
 #include "tests/filter/filter_test_support.hpp"
 #include "tests/support/matrix_compare.hpp"
 
@@ -87,23 +87,10 @@ TEST(TransitionMatrix, StickySpreadsTheRestEqually) {
 
 constexpr double digits = 1e-12;  // tolerance for two computations of a number of order one in double precision
 
-Trajectory picked(Trajectory run, const std::vector<Eigen::Index>& samples) {
-  run.time_s = run.time_s(samples).eval();
-  run.state = run.state(Eigen::all, samples).eval();
-  run.input = run.input(Eigen::all, samples).eval();
-  return run;
-}
-
-Trajectory ending(const Trajectory& run, Eigen::Index count) {
-  std::vector<Eigen::Index> samples(static_cast<std::size_t>(count));
-  std::iota(samples.begin(), samples.end(), run.samples() - count);
-  return picked(run, samples);
-}
-
 TEST(Start, WaitsForTheFirstWholeMeasurement) {
   const Bank bank = example_bank(2, 1, 2);
   Trajectory run = simulate_bank(bank, 20, 8);
-  const Trajectory tail = ending(run, 17);
+  const Trajectory tail = stretch(run, 3, 17);
   run.state.leftCols(2).setConstant(std::nan(""));
   run.state(1, 2) = std::nan("");
   const RunEvaluation late = evaluate_run(bank, run, {}), fresh = evaluate_run(bank, tail, {});
@@ -117,12 +104,14 @@ TEST(Start, WaitsForTheFirstWholeMeasurement) {
 TEST(TimeSteps, ALongerTimeIsSeveralPredictionsWithTheInputHeld) {
   Bank bank = example_bank(2, 1, 3);
   bank.dt_s = 0.1;
-  Trajectory run = simulate_bank(bank, 12, 13);
-  run.time_s *= 0.1;
-  Trajectory every = run;  // with all times; at two of them the measurement is missing, and the input is held
+  Trajectory every = simulate_bank(bank, 12, 13), gap = every;
+  every.time_s *= 0.1;  // at two times the measurement is missing, and the input is held
   every.state.middleCols(5, 2).setConstant(std::nan(""));
   every.input.col(5) = every.input.col(6) = every.input.col(4);
-  const Trajectory gap = picked(run, {0, 1, 2, 3, 4, 7, 8, 9, 10, 11});
+  const std::vector<int> kept{0, 1, 2, 3, 4, 7, 8, 9, 10, 11};
+  gap.time_s = every.time_s(kept);
+  gap.state = every.state(Eigen::all, kept);
+  gap.input = every.input(Eigen::all, kept);
   const RunEvaluation filled = evaluate_run(bank, every, {}), short_run = evaluate_run(bank, gap, {});
   EXPECT_TRUE(near(short_run.state.rightCols(5), filled.state.rightCols(5), digits));
   EXPECT_TRUE(near(short_run.log_density.tail(5), filled.log_density.tail(5), digits * 10));
@@ -136,7 +125,7 @@ TEST(TimeSteps, AVeryLongTimeAndOneThatGoesBackAreNewStarts) {
     SCOPED_TRACE(jump);
     Trajectory run = simulate_bank(bank, 12, 13);
     run.time_s.tail(5).array() += jump;
-    const RunEvaluation all = evaluate_run(bank, run, {}), fresh = evaluate_run(bank, ending(run, 5), {});
+    const RunEvaluation all = evaluate_run(bank, run, {}), fresh = evaluate_run(bank, stretch(run, 7, 5), {});
     EXPECT_TRUE(std::isnan(all.log_density(7)));
     EXPECT_TRUE(near(all.state.rightCols(5), fresh.state, 0.0));
     EXPECT_TRUE(near(all.log_density.tail(5), fresh.log_density, 0.0));

@@ -32,12 +32,6 @@ Bank with_logit_of_state_and_input() {
   return bank;
 }
 
-Bank with_noise_by_input() {
-  Bank bank = test::example_bank(2, 2, 3);
-  bank.noise_factor = {MatrixXd{{0.0, 0.0, 1.0, -1.0}}, VectorXd::Constant(1, 0.7), -0.3};
-  return bank;
-}
-
 Bank of_lags(const InputDelays& delay) {
   const LinearStructure s{2, std::ssize(delay.listed()), true, 3, 2, delay};
   Bank bank = test::arx_bank(s, test::stable_theta(s));
@@ -66,7 +60,6 @@ std::vector<NamedBank> banks() {
           {"the paper's", test::example_bank(2, 1, 3), {FilterVariant::salvi2025}},
           {"gaps", quick},
           {"logit", with_logit_of_state_and_input()},
-          {"noise by input", with_noise_by_input()},
           {"lags without delay", of_lags(0)},
           {"lags", of_lags(1)},
           {"lags with delay 3", of_lags(3)},
@@ -78,30 +71,23 @@ std::vector<NamedBank> banks() {
 
 filter::Bank installed(const Bank& bank) { return filter::Bank(std::make_shared<const Bank>(bank)); }
 
-VectorXd input_at(const Bank& bank, Index k) {
-  const auto t = static_cast<double>(k);
-  return VectorXd::NullaryExpr(bank.structure.inputs,
-                               [&](Index i) { return 0.4 * std::sin(0.9 * t + static_cast<double>(i)); });
+/// Samples with a gap in time after sample 12 and a missing one at sample 15.
+Trajectory run_of(const Bank& bank) {
+  Trajectory run = test::any_run(bank.structure, 40);
+  run.time_s.tail(27).array() += 2.0;
+  run.state *= 0.1;
+  run.state.col(15).setConstant(std::nan(""));
+  if (bank.is_quantised()) run.state = bank.quantum(0) * (run.state / bank.quantum(0)).array().round();
+  return run;
 }
-
-/// Measurements with a gap in time after sample 12 and a missing one at sample 15.
-VectorXd measurement_at(const Bank& bank, Index k) {
-  VectorXd y(bank.C.rows());
-  for (Index i = 0; i < y.size(); ++i) y(i) = 0.1 * std::sin(0.4 * static_cast<double>(k) + static_cast<double>(i));
-  if (k == 15) y.setConstant(std::nan(""));
-  return bank.is_quantised() ? VectorXd(bank.quantum(0) * (y / bank.quantum(0)).array().round()) : y;
-}
-double time_at(Index k) { return static_cast<double>(k > 12 ? k + 2 : k); }
 
 const filter::Estimate& take(filter::BankFilter& live, const Bank& bank, Index k) {
-  return live.step(time_at(k), input_at(bank, k), measurement_at(bank, k));
+  const Trajectory run = run_of(bank);
+  return live.step(run.time_s(k), VectorXd(run.input.col(k)), VectorXd(run.state.col(k)));
 }
 
 Matrix planned(const Bank& bank, Index now, Index count) {
-  Matrix inputs(bank.structure.inputs, count);
-  for (Index i = 0; i < count; ++i)
-    for (Index j = 0; j < inputs.rows; ++j) inputs(j, i) = input_at(bank, now + 1 + i)(j);
-  return inputs;
+  return to_matrix(run_of(bank).input.middleCols(now + 1, count));
 }
 
 void expect_same_bits(const filter::Estimate& a, const filter::Estimate& b) {
@@ -134,13 +120,14 @@ TEST(Forecast, IsWhatStepsWithoutMeasurementsPredict) {
     SCOPED_TRACE(name);
     filter::BankFilter live(installed(bank), options);
     for (Index k = 0; k < 20; ++k) take(live, bank, k);
+    const Trajectory run = run_of(bank);
     const Index steps = 7;
     const std::vector<filter::Forecast> ahead =
         live.forecast(planned(bank, 19, std::max<Index>(steps - bank.structure.input_delay.earliest(), 0)), steps);
     for (Index i = 0; i < steps; ++i) {
       const filter::Estimate& said =
-          live.step(std::nan(""), input_at(bank, 20 + i), VectorXd(VectorXd::Constant(bank.C.rows(), std::nan(""))));
-      const filter::Forecast& forecast = ahead[static_cast<std::size_t>(i)];
+          live.step(std::nan(""), VectorXd(run.input.col(20 + i)), VectorXd(std::nan("") * run.state.col(0)));
+      const filter::Forecast& forecast = ahead[i];
       EXPECT_TRUE(test::near(view(forecast.state), view(said.state), two_texts)) << i;
       EXPECT_TRUE(test::near(view(forecast.covariance), view(said.covariance), two_texts)) << i;
       EXPECT_TRUE(test::near(view(forecast.mode_probability), view(said.mode_probability), two_texts)) << i;
@@ -151,26 +138,18 @@ TEST(Forecast, IsWhatStepsWithoutMeasurementsPredict) {
 TEST(Forecast, IsWhatTheJudgeScores) {
   for (const auto& [name, bank, options] : banks()) {
     SCOPED_TRACE(name);
-    Trajectory run;
-    run.run = "any";
-    const Index samples = 24, steps = 4;
-    run.time_s = VectorXd::NullaryExpr(samples, [](Index k) { return time_at(k); });
-    run.state.resize(bank.C.rows(), samples);
-    run.input.resize(bank.structure.inputs, samples);
-    for (Index k = 0; k < samples; ++k) {
-      run.state.col(k) = measurement_at(bank, k);
-      run.input.col(k) = input_at(bank, k);
-    }
+    const Trajectory run = run_of(bank);
     const HorizonEvaluation judged = evaluate_horizons(bank, run, options, {1, 2, 3, 4});
     filter::BankFilter live(installed(bank), options);
-    for (Index k = 0; k + steps < samples; ++k) {
+    const Index steps = 4;
+    for (Index k = 0; k + steps < run.samples(); ++k) {
       take(live, bank, k);
       if (k >= 9 && k <= 12) continue;  // a gap follows, in which the evaluation takes more steps
       const std::vector<filter::Forecast> ahead = live.forecast(planned(bank, k, steps), steps);
       for (Index h = 1; h <= steps && live.started(); ++h) {
-        const VectorXd error = judged.error[static_cast<std::size_t>(h - 1)].col(k + h);
+        const VectorXd error = judged.error[h - 1].col(k + h);
         if (!error.allFinite()) continue;
-        const VectorXd y = bank.C * view(ahead[static_cast<std::size_t>(h - 1)].state);
+        const VectorXd y = bank.C * view(ahead[h - 1].state);
         EXPECT_TRUE(test::near(run.state.col(k + h) - y, error, two_texts)) << k << " + " << h;
       }
     }

@@ -12,12 +12,6 @@
 namespace modebank {
 namespace {
 
-Bank with_logit(Bank bank) {
-  const Eigen::Index d = bank.structure.dimension() + bank.structure.acting_inputs();
-  bank.transition_logit = {Eigen::MatrixXd::Random(bank.mode_count(), d), Eigen::VectorXd::Constant(d, 0.1)};
-  return bank;
-}
-
 template <class Filter>
 void run_without_allocation(Filter filter, const Trajectory& run) {
   const long before = test::allocations;
@@ -29,7 +23,7 @@ TEST(NoAllocation, TheCounterSeesEigenAndOperatorNew) {
   const long before = test::allocations;
   const Eigen::VectorXd by_eigen = Eigen::VectorXd::Ones(100);
   const long eigen = test::allocations;
-  const std::vector<double> by_new(static_cast<std::size_t>(by_eigen.size()), by_eigen(0));
+  const std::vector<double> by_new(by_eigen.size(), by_eigen(0));
   EXPECT_GT(eigen, before);
   EXPECT_GT(test::allocations, eigen) << by_new.size();
 }
@@ -43,7 +37,7 @@ TEST(NoAllocation, TheBankFilterOfAnyBank) {
     Bank rounded = bank;
     rounded.quantum.setConstant(n, 0.02);
     if (n > 1) rounded.quantum(1) = 0.0;
-    banks.insert(banks.end(), {bank, rounded, with_logit(bank)});
+    banks.insert(banks.end(), {bank, rounded, test::with_paths(bank)});
   }
   for (Bank& bank : banks) {
     bank.dt_s = 1.0;

@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "filter/judge/evaluate.hpp"
-#include "filter/judge/horizon.hpp"
 #include "filter/judge/statistics.hpp"
 #include "filter/step/bank_filter.hpp"
 #include "modebank/judge/evaluate.hpp"
@@ -129,7 +128,7 @@ TEST(Rounded, TransformOfTheInstalledFilterIsUniform) {
     const filter::Estimate& said = live.step(run.time_s(k), VectorXd(run.input.col(k)), VectorXd(run.state.col(k)));
     if (k == 0) continue;
     pit.push_back(said.pit[0]);
-    ASSERT_EQ(said.pit[0], of_run.values[static_cast<std::size_t>(k)]) << k;
+    ASSERT_EQ(said.pit[0], of_run.values[k]) << k;
   }
   constexpr double one_per_mille = 1.95;  // Kolmogorov's distribution
   EXPECT_LT(kolmogorov_distance(pit), one_per_mille / std::sqrt(static_cast<double>(samples)));
@@ -147,14 +146,6 @@ TEST(Rounded, DrawsDependOnSeedRunAndSampleAlone) {
   EXPECT_EQ(drawn(1, "a"), drawn(1, "a"));
   EXPECT_NE(drawn(1, "a"), drawn(2, "a"));
   EXPECT_NE(drawn(1, "a"), drawn(1, "b"));
-}
-
-TEST(Rounded, HorizonOneIsTheFiltersOwnScore) {
-  const Bank bank = with_quantum(test::example_bank(1, 1, 2), 0.05);
-  const Trajectory run = rounded(test::simulate_bank(bank, 60, 6), 0.05);
-  const HorizonEvaluation ahead = evaluate_horizons(bank, run, {}, {1, 3});
-  const VectorXd densities = evaluate_run(bank, run, {}).log_density;
-  for (Index k = 1; k < run.samples(); ++k) EXPECT_NEAR(ahead.log_density(0, k), densities(k), 1e-12);
 }
 
 }  // namespace

@@ -3,9 +3,8 @@
 
     /usr/bin/python3 tests/golden/generate/imm_reference.py
 
-writes imm_scalar.json, imm_vector.json, imm_partial.json, imm_missing.json, imm_three.json, salvi2025_scalar.json,
-salvi2025_vector.json and scores.json into data/. Written from the textbook (Bar-Shalom, Li & Kirubarajan 2001,
-section 11.6.6) in the linear domain with explicit inverses and scipy's multivariate normal; signals that are
+writes the JSON files that its last lines name into data/. Written from the textbook (Bar-Shalom, Li & Kirubarajan
+2001, section 11.6.6) in the linear domain with explicit inverses and scipy's multivariate normal; signals that are
 missing are left out of C, R and y. The filter that prints eq. 12-18 of Salvi et al. (2025) follows the paper. Nothing
 here is shared with the C++ code.
 """
@@ -187,4 +186,5 @@ if __name__ == '__main__':
     case('imm_three.json', 9, 3, 2, 3, 3, 'imm', missing=gaps)
     case('salvi2025_scalar.json', 7, 1, 2, 1, 3, 'salvi2025')
     case('salvi2025_vector.json', 8, 2, 1, 2, 2, 'salvi2025')
+    case('salvi2025_three.json', 9, 3, 2, 3, 3, 'salvi2025', missing=gaps)
     scores()

@@ -17,8 +17,8 @@ TEST(Windows, NeverCrossRunsAndCoverTrainingRunsOnly) {
   const std::vector<std::pair<Index, Index>> expected{{0, 0}, {0, 2}, {0, 4}, {3, 0}, {3, 2}};
   ASSERT_EQ(windows.count(), std::ssize(expected));
   for (Index i = 0; i < windows.count(); ++i) {
-    EXPECT_EQ(windows.window(i).run, expected[static_cast<std::size_t>(i)].first);
-    EXPECT_EQ(windows.window(i).start, expected[static_cast<std::size_t>(i)].second);
+    EXPECT_EQ(windows.window(i).run, expected[i].first);
+    EXPECT_EQ(windows.window(i).start, expected[i].second);
   }
 }
 

@@ -70,9 +70,8 @@ TEST_P(Batch, EveryWindowIsAtAStationaryPointAndConvexOnesAtTheReference) {
         ++unsolved;  // the window has the status unsolved
         continue;
       }
-      const Window window = fits.windows[static_cast<std::size_t>(i)];
-      const auto data =
-          test::window_of(recording.runs[static_cast<std::size_t>(window.run)], window.start, o.length, structure);
+      const Window window = fits.windows[i];
+      const auto data = test::window_of(recording.runs[window.run], window.start, o.length, structure);
       const RealVector theta = fits.parameters.col(i).cast<test::Real>();
       EXPECT_LE(problem.relative_gradient(data, theta), 1e-10) << "window " << i << ", inputs " << inputs;
       if (!convex(o.loss)) continue;
@@ -182,7 +181,7 @@ TEST_P(Batch, ThreadsChunksAndNeighboursDoNotChangeABit) {
       solver(staged, workspace.scratch(o.length), out);
     }
     for (Index i = 0; i < windows; ++i)
-      if (verdict[static_cast<std::size_t>(i)] != batch::Verdict::solved) theta.col(i).setZero();
+      if (verdict[i] != batch::Verdict::solved) theta.col(i).setZero();
     thetas.push_back(theta);
   }
   for (const MatrixXd& theta : thetas) EXPECT_TRUE(test::same_bits(theta, thetas[0]));

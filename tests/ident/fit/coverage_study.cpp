@@ -97,7 +97,7 @@ double measure_coverage(CoverageCase which, Loss loss, CovarianceKind kind, std:
     fit.information.setConstant(3, std::nan(""));
     if (!fits.prior_sd.empty())
       fit.information = 1.0 - fit.covariance.diagonal().array() / view(fits.prior_sd).array().square();
-    inside += confidence_region(fit, 0.95).contains(truth[static_cast<std::size_t>(i)]) ? 1 : 0;
+    inside += confidence_region(fit, 0.95).contains(truth[i]) ? 1 : 0;
   }
   return static_cast<double>(inside) / static_cast<double>(windows);
 }

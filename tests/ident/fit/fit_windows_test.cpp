@@ -100,11 +100,11 @@ TEST(FitWindows, OneLagFitsAreOfTheSameTransitions) {
   EXPECT_EQ(same.structure, test::skid_structure);
   Index compared = 0;
   for (Index i = 0, j = 0; i < same.count(); ++i) {
-    const Window &window = same.windows[static_cast<std::size_t>(i)], &of = many.windows[static_cast<std::size_t>(i)];
+    const Window &window = same.windows[i], &of = many.windows[i];
     EXPECT_EQ(window.run, of.run);
     EXPECT_EQ(window.start, of.start);
     const auto elsewhere = [&] {
-      const Window& at = one.windows[static_cast<std::size_t>(j)];
+      const Window& at = one.windows[j];
       return at.run != window.run || at.start != window.start;
     };
     while (elsewhere()) ++j;
@@ -123,7 +123,7 @@ TEST(FitWindows, MarkUnexcitedWindows) {
     options.prior = kind;
     const WindowFits fits = fit_windows(recording, options);
     for (Index i = 0; i < fits.count(); ++i) {
-      const Index start = fits.windows[static_cast<std::size_t>(i)].start;
+      const Index start = fits.windows[i].start;
       const bool constant_command = start >= 30 && start + 25 <= 65;
       EXPECT_EQ(fits.status(i), constant_command ? 2 : 0) << "start " << start;
       EXPECT_EQ(fits.rank(i), constant_command ? 2 : 3) << "start " << start;

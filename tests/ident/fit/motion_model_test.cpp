@@ -162,7 +162,7 @@ TEST(MotionModel, EachSlipParameterLiesWithinThreeStandardErrors) {
       for (Index j = 0; j < found.inside.size(); ++j) {
         const double share = found.inside(j) / static_cast<double>(found.windows);
         EXPECT_GE(share, 0.985) << exact.settings.states << " states, " << name_of(loss) << ", "
-                                << model->parameters()[static_cast<std::size_t>(j)].name;
+                                << model->parameters()[j].name;
         RecordProperty(std::string(name_of(loss)) + std::to_string(exact.settings.states) + "_" + std::to_string(j),
                        std::to_string(share));
       }

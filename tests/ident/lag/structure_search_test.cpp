@@ -41,11 +41,9 @@ Recording simulate(const System& system, std::uint64_t seed) {
     for (Index k = 0; k + 1 < system.samples; ++k) {
       e = system.rho * e + system.noise_sd * normal(generator);
       double next = system.offset + e;
-      for (Index i = 0; i < std::ssize(system.a) && i <= k; ++i)
-        next += system.a[static_cast<std::size_t>(i)] * y(0, k - i);
+      for (Index i = 0; i < std::ssize(system.a) && i <= k; ++i) next += system.a[i] * y(0, k - i);
       for (Index j = 0; j < std::ssize(system.b); ++j)
-        if (const Index at = k + 1 - system.delay - j; at >= 0)
-          next += system.b[static_cast<std::size_t>(j)] * u(0, at);
+        if (const Index at = k + 1 - system.delay - j; at >= 0) next += system.b[j] * u(0, at);
       y(0, k + 1) = next;
     }
     runs.push_back(make_run(y, u));

@@ -33,8 +33,7 @@ SimulationOptions two_modes() {
 
 /// w[k] = x[k+1] - prediction by the mode of transition k, for the transitions of one mode.
 VectorXd process_noise(const SimulatedRun& run, const SimulationOptions& options, int mode) {
-  const LinearModel model =
-      unpack({options.states, options.inputs, options.intercept}, options.modes[static_cast<std::size_t>(mode)]);
+  const LinearModel model = unpack({options.states, options.inputs, options.intercept}, options.modes[mode]);
   std::vector<double> noise;
   for (Index k = 0; k < run.measured.transitions(); ++k) {
     if (run.mode(k) != mode) continue;
@@ -127,7 +126,7 @@ TEST(Simulate, NoisesHaveTheirStandardDeviations) {
   const SimulatedRun run = simulate(options, seed).front();
   for (const int mode : {0, 1}) {
     const VectorXd noise = process_noise(run, options, mode);
-    const double expected = options.process_sd[static_cast<std::size_t>(mode)];
+    const double expected = options.process_sd[mode];
     const double count = static_cast<double>(noise.size());
     ASSERT_GT(count, 1000);
     EXPECT_NEAR(sd(noise), expected, 4 * expected / std::sqrt(2 * count));

@@ -39,7 +39,7 @@ TEST(StatedTerms, AreTheFunctionsThatTheyName) {
   const MatrixXd columns = term_columns(terms, rows);
   const auto in_units = [&](Index t, double value) {
     double unit = 1.0;
-    for (const Index v : terms.terms[static_cast<std::size_t>(t)].variables) unit *= terms.unit(v);
+    for (const Index v : terms.terms[t].variables) unit *= terms.unit(v);
     return value / unit;
   };
   const MatrixXd expected = (MatrixXd(2, 4) << 2.0, 1.0, 0.5, 1.5, -2.25, 4.0, 0.0, 0.75).finished();

@@ -101,9 +101,8 @@ void list(Listing& to, const Term& t) { to(t.kind, t.variables, t.knot); }
 void list(Listing& to, const ScreenedMode& s) { to(s.component, s.weight, s.spectral_radius, s.reason); }
 void list(Listing& to, const Bank& b) {
   to(b.structure, b.modes, b.terms.terms, b.terms.direction, b.terms.low, b.terms.high, b.terms.unit, b.C, b.R);
-  to(b.transition.matrix(), b.transition_logit.weights, b.transition_logit.reference, b.transition_weight_error);
-  to(b.initial_probability, b.R_standard_error, b.transition_standard_error, b.noise_factor.directions,
-     b.noise_factor.weights, b.noise_factor.offset);
+  to(b.transition.matrix(), b.transition_logit.weights, b.transition_logit.reference, b.motion);
+  to(b.initial_probability, b.R_standard_error, b.transition_standard_error);
   to(b.state_names, b.input_names, b.dt_s);
   to(b.screened);
 }

@@ -151,7 +151,7 @@ Bank make_bank(const LinearStructure& structure, Index count, bool uncertain) {
     bank.transition_standard_error = pattern(count, count, 90.0);
     const Index features = structure.dimension() + structure.acting_inputs();
     bank.transition_logit = {pattern(count, features, 95.0), pattern(features, 1, 96.0)};
-    bank.transition_weight_error = pattern(count, features, 97.0);
+    bank.motion = {1, 0, 0};
   }
   if (uncertain) bank.screened.push_back({4, 0.01, 1.25, "unstable: spectral radius 1.25"});
   return bank;

@@ -70,41 +70,16 @@ FreeRunRow make_free_run_row(const std::string& filter, Index n) {
 }
 
 DiagnosticsRow make_diagnostics(const std::string& filter, Index mode, Index n) {
-  return {filter,
-          Role::test,
-          mode,
-          23,
-          0.25,
-          0.5,
-          12.5,
-          20.0,
-          0.51,
-          0.47,
-          0.55,
-          0.91,
-          0.88,
-          0.93,
-          0.96,
-          0.94,
-          0.97,
-          0.995,
-          0.98,
-          1.0,
-          0.03,
-          0.01,
-          0.06,
-          0.02,
-          0.005,
-          0.05,
-          1.1,
-          2.1,
-          pattern(n, 1, 85.0),
-          0.4,
-          0.63,
-          5,
-          Calibration::overconfident,
-          CalibrationReason::band,
-          "probabilities flat; heavy tails"};
+  DiagnosticsRow row{filter, Role::test, mode, 23,    0.25, 0.5, 12.5, 20.0, 0.51, 0.47, 0.55,  0.91, 0.88, 0.93,
+                     0.96,   0.94,       0.97, 0.995, 0.98, 1.0, 0.03, 0.01, 0.06, 0.02, 0.005, 0.05, 1.1,  2.1};
+  row.state_rmse = pattern(n, 1, 85.0);
+  row.whiteness_p = 0.4;
+  row.autocorrelation = 0.63;
+  row.autocorrelation_lag = 5;
+  row.verdict = Calibration::overconfident;
+  row.reason = CalibrationReason::band;
+  row.flags = "probabilities flat; heavy tails";
+  return row;
 }
 
 Finding make_finding() {

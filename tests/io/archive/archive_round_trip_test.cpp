@@ -1,3 +1,4 @@
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,6 +12,7 @@
 #include "io/archive/bank/load_bank.hpp"
 #include "modebank/base/error.hpp"
 #include "tests/io/archive/archive_fixture.hpp"
+#include "tests/io/archive/archive_patch.hpp"
 #include "tests/support/paths.hpp"
 
 namespace modebank {
@@ -18,6 +20,8 @@ namespace {
 
 using test::expect_same;
 using test::full_archive;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
 
 Archive round_trip(const Archive& archive) {
   const test::TemporaryFolder folder;
@@ -89,19 +93,14 @@ TEST(ArchiveRoundTrip, TermsComeBackOrAreRefused) {
   EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
 }
 
-TEST(ArchiveRoundTrip, NoiseThatFollowsStateAndInputComesBackOrIsRefused) {
-  Archive archive = full_archive(2, 1);
-  const LinearStructure& s = archive.bank->structure;
-  archive.bank->transition_logit = {};
-  archive.bank->transition_weight_error.resize(0, 0);
-  archive.bank->noise_factor = {Eigen::MatrixXd::Random(3, s.dimension() + s.acting_inputs()),
-                                Eigen::Vector3d(0.5, -0.25, 0.125), 0.75};
-  archive.noise_only->noise_factor = archive.bank->noise_factor;
-  expect_same(round_trip(archive), archive);
+TEST(ArchiveRoundTrip, ABankWhoseNoiseFollowsStateAndInputIsRefused) {
   const test::TemporaryFolder folder;
-  archive.bank->noise_factor.directions.conservativeResize(Eigen::NoChange, s.dimension());
-  write_archive(folder.path() / "a.h5", archive);
-  EXPECT_THROW(read_archive(folder.path() / "a.h5"), DataError);
+  const auto path = folder.path() / "a.h5";
+  write_archive(path, full_archive(2, 1));
+  test::craft(path,
+              [](hid_t file) { H5Ocopy(file, "/bank/weight", file, "/bank/noise_weights", H5P_DEFAULT, H5P_DEFAULT); });
+  EXPECT_FALSE(verify_archive(path).problems.empty());
+  EXPECT_THAT([&] { read_archive(path); }, ThrowsMessage<DataError>(HasSubstr("noise follows state and input")));
 }
 
 TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
@@ -114,6 +113,12 @@ TEST(ArchiveRoundTrip, ABankThatNoFilterCanRunIsRefusedAtLoad) {
     EXPECT_FALSE(verify_archive(path).problems.empty());
     EXPECT_THROW(read_archive(path), DataError);
     EXPECT_THROW(load_bank(path), DataError);
+  }
+  for (const std::vector<Eigen::Index>& motion : {std::vector<Eigen::Index>{0, 2, 2}, {0, 1, 3}, {0, -1, 0}}) {
+    Archive archive = full_archive(2, 1);
+    archive.bank->motion = motion;
+    write_archive(path, archive);
+    EXPECT_THROW(load_bank(path), DataError) << "numbers of motions with a hole, or out of range";
   }
 }
 
@@ -174,7 +179,7 @@ TEST(ArchiveRoundTrip, WindowsWrittenPartByPartAreTheWholeArchive) {
       const Index count = std::min(part_windows, whole.count() - first);
       part.resize(count);
       for (Index i = 0; i < count; ++i) {
-        part.windows[static_cast<std::size_t>(i)] = whole.windows[static_cast<std::size_t>(first + i)];
+        part.windows[i] = whole.windows[first + i];
         part.set(i, whole.at(first + i));
       }
       sink(part, first);

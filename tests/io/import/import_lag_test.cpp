@@ -84,7 +84,7 @@ TEST_F(ImportLag, WithinOneFileToo) {
     for (int k = 0; k < 600; ++k) {
       random = random * 6364136223846793005u + 1442695040888963407u;
       u.push_back(k % 15 == 0 ? static_cast<double>(random >> 11) * 0x1p-53 : u.back());
-      const double acting = k >= 3 ? u[static_cast<std::size_t>(k - 3)] : 0.0;
+      const double acting = k >= 3 ? u[k - 3] : 0.0;
       text << 0.1 * k << ',' << x << ',' << u.back() << '\n';
       x += 0.3 * (acting - x);
     }

@@ -29,7 +29,7 @@ GaussianMixture four_in_a_row() {
 GaussianMixture with_error(Index divided, Index first, Index second) {
   GaussianMixture mixture = four_in_a_row();
   mixture.means.col(first) = 0.5 * (mixture.means.col(first) + mixture.means.col(second));
-  mixture.covariances[static_cast<std::size_t>(first)](0, 0) = 25.0;
+  mixture.covariances[first](0, 0) = 25.0;
   mixture.means.col(second) = mixture.means.col(divided) + Eigen::Vector2d(0.5, 0.0);
   mixture.means.col(divided).x() -= 0.5;
   return mixture;

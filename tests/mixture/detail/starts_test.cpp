@@ -48,8 +48,8 @@ TEST(Starts, ClustersMomentsAreDrawnTowardsThePooledOnes) {
   EXPECT_NEAR(start.means(low), 1.0, 1e-14);
   EXPECT_NEAR(start.means(1 - low), 103.0, 1e-14);
   // The scatters are 2 and 12 with weights 2 and 4, pooled 14 / 6. The strength is (F + 1) times the mean weight 1.5.
-  EXPECT_NEAR(start.covariances[static_cast<std::size_t>(low)](0, 0), (2.0 + 3.0 * 14.0 / 6.0) / 5.0, 1e-14);
-  EXPECT_NEAR(start.covariances[static_cast<std::size_t>(1 - low)](0, 0), (12.0 + 3.0 * 14.0 / 6.0) / 7.0, 1e-14);
+  EXPECT_NEAR(start.covariances[low](0, 0), (2.0 + 3.0 * 14.0 / 6.0) / 5.0, 1e-14);
+  EXPECT_NEAR(start.covariances[1 - low](0, 0), (12.0 + 3.0 * 14.0 / 6.0) / 7.0, 1e-14);
   EXPECT_NEAR(start.weights(low), 3.5 / 9.0, 1e-15);
 }
 

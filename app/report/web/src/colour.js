@@ -24,14 +24,14 @@ export function paletteColour(palette, k) {
 // app/text/mode_words.hpp). Pages and figures in papers use the same ranks.
 export const usedColour = (palette, rank) => paletteColour(palette, rank < palette.modes.length ? rank : -1);
 
-// Shades for the modes of one family: towards black or white, and how strongly.
+// Shades for the modes of one motion: towards black or white, and how strongly.
 const turns = [
   [], ['#000000', 0.3], ['#ffffff', 0.4], ['#000000', 0.5], ['#ffffff', 0.6], ['#000000', 0.66], ['#ffffff', 0.75],
   ['#000000', 0.15]
 ];
 
 /**
- * The colour of a mode that has `turn` more used ones of its family before it; `hue`: the family's place in the
+ * The colour of a mode that has `turn` more used ones of its motion before it; `hue`: the motion's place in the
  * palette.
  */
 export function hueColour(palette, hue, turn) {

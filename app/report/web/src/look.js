@@ -22,7 +22,7 @@ export const canvasLook = () => ({
   faint: dark() ? '#2c313a' : '#e4e7ec',
 });
 
-// Modes of one family share a hue. The most used families have the first hues of the palette. Rarely used families are
+// Modes of one motion share a hue. The most used motions have the first hues of the palette. Rarely used motions are
 // grey.
 export function modeColour(k) {
   if (isOther(k)) return palette.unclustered;

@@ -6,10 +6,10 @@ let hues = [];
 let toldCount = Infinity;
 
 /**
- * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used family first, of
- * which `told` stand one by one; `families`: {title, modes}, the most used first.
+ * `list`: the name of each mode, '' where it has none; `order`: all modes, those of the most used motion first, of
+ * which `told` stand one by one; `motions`: {title, modes}, the most used first.
  */
-export function nameModes(list, order = [], told = Infinity, families = order.map((mode) => ({modes: [mode]}))) {
+export function nameModes(list, order = [], told = Infinity, motions = order.map((mode) => ({modes: [mode]}))) {
   names = list;
   ranks = [];
   hues = [];
@@ -17,14 +17,14 @@ export function nameModes(list, order = [], told = Infinity, families = order.ma
   order.forEach((mode, rank) => {
     ranks[mode] = rank;
   });
-  families.forEach((family, hue) => family.modes.forEach((mode, turn) => {
+  motions.forEach((motion, hue) => motion.modes.forEach((mode, turn) => {
     hues[mode] = {hue, turn};
   }));
 }
 
 /** Number of modes with more use. */
 export const rankOf = (k) => (ranks[k] === undefined ? k : ranks[k]);
-/** Its hue, which modes of one family share, and how many more used modes that family has. */
+/** Its hue, which modes of one motion share, and how many more used modes that motion has. */
 export const hueOf = (k) => hues[k] || {hue: rankOf(k), turn: 0};
 /** Whether a mode is among the rarely used ones that are merged. */
 export const isOther = (k) => rankOf(k) >= toldCount;

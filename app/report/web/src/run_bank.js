@@ -3,7 +3,7 @@ import {details, facts, h, note} from './elements.js';
 import {roleNames} from './filters.js';
 import {modeColour} from './look.js';
 import {modeCell} from './mode_names.js';
-import {byUse, familiesOf, hasFamilies, othersName} from './modes.js';
+import {byUse, hasLevels, motionsOf, othersName} from './modes.js';
 import {section} from './page.js';
 import {switching} from './run_switching.js';
 import {table} from './table.js';
@@ -47,20 +47,18 @@ function numberColumns(bank) {
   ];
 }
 
-// All families, as on the first screen.
-function familyTable(bank) {
-  const {told, others} = familiesOf(bank);
+// All motions, as on the first screen.
+function motionTable(bank) {
+  const {told, others} = motionsOf(bank);
   const rows = [...told, ...others].map((row) => ({...row, colour: modeColour(row.lead)}));
   const columns = [
-    {...which, name: 'Family', of: (row) => row.title},
+    {...which, name: 'Motion', of: (row) => row.title},
     {name: 'Used', of: (row) => row.use},
     {name: 'Stay', of: (row) => row.stay},
     {name: 'Time constant', of: (row) => row.decays},
     ...gains(bank),
   ];
-  const means =
-      'means over the modes, weighted by use; ± includes the errors of the modes and the differences between them';
-  return table(columns, rows, {caption: `Families of modes, most used first (${means})`, sortable: true});
+  return table(columns, rows, {caption: 'Motions, most used first (their modes differ in noise)', sortable: true});
 }
 
 function modeTables(bank) {
@@ -71,7 +69,7 @@ function modeTables(bank) {
   const all = [...named(bank.order.map((k) => bank.modes[k])), ...baseline];
   const each = table(wordColumns(bank), [...named(told), ...baseline], {caption, sortable: true});
   return [
-    ...(hasFamilies(bank) ? [familyTable(bank), details('Each mode', each)] : [each]),
+    ...(hasLevels(bank) ? [motionTable(bank), details('Each mode', each)] : [each]),
     others.length ? details(
                         `${othersName(others.length)}, used less`,
                         table(wordColumns(bank), named(others), {caption: 'Other modes', sortable: true})) :
@@ -108,7 +106,7 @@ function screenedTable(screened) {
 function confusionTable(bank) {
   const {confusion} = bank;
   if (!confusion) return null;
-  const {told, others} = familiesOf(bank);
+  const {told, others} = motionsOf(bank);
   const rest = others.length ? [{name: othersName(others.length), of: (row) => row.shares[told.length]}] : [];
   const columns = [
     {name: 'Label', text: true, of: (row) => row.label},

@@ -76,7 +76,7 @@ async function drawWindows(windows) {
   place.append(...await drawCloud(windows));
   const all = `${windows.count.t} windows of ${windows.length} transitions`;
   const text = windows.step > 1 ? `${all}; every ${windows.step}th is drawn.` : `${all}.`;
-  place.querySelector('h2').after(h('p', {}, text));
+  place.querySelector('h2').after(h('p', {}, windows.noise ? `${text} Here ${windows.noise}.` : text));
 }
 
 // State that all sections with a filter share: the index of the filter, and the index of the state.
@@ -96,7 +96,7 @@ const data = pageData();
 
 function drawFirst() {
   const {bank} = data;
-  if (bank) nameModes(bank.modes.map((mode) => mode.name), bank.order, bank.told, bank.families);
+  if (bank) nameModes(bank.modes.map((mode) => mode.name), bank.order, bank.told, bank.motions);
   head(data.file, `Run of ${data.origin.created}`);
   drawVerdict(data.verdict);
 }

@@ -29,9 +29,6 @@ const cardList = (id, rows) => (rows.length ? h('ul', {class: 'numbers', id}, ro
 
 function modesTable(modes) {
   const unit = modes.gain_unit ? `; gains in ${modes.gain_unit}` : '';
-  const noun = modes.families === 1 ? 'family' : 'families';
-  const families = modes.families < modes.count ? ` in ${modes.families} ${noun}` : '';
-  const title = `${modes.count} mode${modes.count === 1 ? '' : 's'}${families}${unit}`;
   const columns = modes.headings.map((name, i) => ({
                                        name,
                                        text: i === 0,
@@ -40,7 +37,7 @@ function modesTable(modes) {
                                      }));
   const head = h('tr', {}, columns.map((column) => headingOf(column, {}, column.name)));
   const body = modes.rows.map((row) => h('tr', {}, columns.map((column) => cellOf(column, row))));
-  const caption = h('caption', {}, title);
+  const caption = h('caption', {}, modes.title + unit);
   return h(
       'div', {id: 'screen-modes'},
       scrolling('Modes in words', h('table', {}, caption, h('thead', {}, head), h('tbody', {}, body))),

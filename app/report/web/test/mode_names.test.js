@@ -20,9 +20,9 @@ test('modes rank by use where it is known', () => {
   assert.equal(isOther(2), false);
 });
 
-test('modes of one family share a hue, the most used family has the first', () => {
-  const families = [{modes: [1]}, {modes: [2, 0]}, {modes: [4]}, {modes: [3]}];
-  nameModes(['ice', 'grip', 'ice', '', ''], [1, 2, 0, 4, 3], 5, families);
+test('modes of one motion share a hue, the most used motion has the first', () => {
+  const motions = [{modes: [1]}, {modes: [2, 0]}, {modes: [4]}, {modes: [3]}];
+  nameModes(['ice', 'grip', 'ice', '', ''], [1, 2, 0, 4, 3], 5, motions);
   assert.deepEqual([1, 2, 0, 4, 3].map((k) => hueOf(k).hue), [0, 1, 1, 2, 3]);
   assert.deepEqual([1, 2, 0, 4, 3].map((k) => hueOf(k).turn), [0, 0, 1, 0, 0]);
   nameModes([]);

@@ -42,14 +42,6 @@ struct StateDependentTransition {
   std::vector<double> reference;  ///< d, the value of z for which the transition matrix holds
 };
 
-/// Process noise that depends on state and input: in a step from z, Q exp(sum_i weights_i log(|directions_i z| + 0.1) -
-/// offset), with a factor of 0.2 to 5. z holds the state and the acting inputs. If empty, Q is constant.
-struct NoiseByState {
-  Matrix directions;            ///< d x (n + acting inputs), one direction per row
-  std::vector<double> weights;  ///< d
-  double offset = 0.0;          ///< subtracted in the exponent
-};
-
 /// Drift of theta within a run, per regressor of [z; v; (1)], of a single mode with RunningNoise (the competitor
 /// `drifting`). If empty, theta is constant.
 struct CoefficientDrift {
@@ -90,7 +82,6 @@ struct BankDescription {
   InputDelays input_delay = 1;    ///< number of samples from each input to its first effect
   bool intercept = false;         ///< whether c is part of theta
   std::vector<double> centre;     ///< measured states, then inputs: the point about which theta is taken; empty: zero
-  NoiseByState noise_by_state;    ///< empty: constant
   CoefficientDrift drift;         ///< empty: none
   RunningNoise running_noise;     ///< empty: the noise is Q
 };

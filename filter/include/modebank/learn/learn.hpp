@@ -27,6 +27,7 @@ struct Uncertainty {
   Matrix motion_theta_standard_error;               ///< of the same shape
 };
 
+/// How a bank was learned.
 struct Origin {
   std::vector<std::string> features;         ///< F, clustered features of a window
   mixture::Mixture mixture;                  ///< mixture of the windows

@@ -49,10 +49,8 @@ struct RefineOptions {
   bool measurement_noise = true;  ///< whether R maximises the filter's likelihood; false: R of the start is kept
   bool screen = true;             ///< whether unstable, starved and duplicate modes are removed
   bool state_dependent_transition = false;  ///< whether T may depend on state and input (TransitionSource::logit)
-  bool one_theta = false;                   ///< whether all modes share theta and differ only in Q (`one_motion`)
-  bool noise_by_input = false;  ///< whether all Q share one factor that follows state and input; R is then negligible
-  std::uint64_t seed = 1;       ///< of the random starts
-  std::ptrdiff_t transitions = 20000;  ///< most transitions to learn from, in stretches drawn by the seed; 0: all
+  std::uint64_t seed = 1;                   ///< of the random starts
+  std::ptrdiff_t transitions = 20000;       ///< most transitions to learn from, in stretches drawn by the seed; 0: all
 };
 
 /// How a mixture of windows becomes a bank. Defaults are the recommended method.

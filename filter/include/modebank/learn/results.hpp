@@ -22,7 +22,6 @@ struct EnumNames<MeasuredFit> {
 struct RefineCandidate {
   std::string start;                                        ///< "mixture" or "stretches 1"
   std::ptrdiff_t modes = 0;                                 ///< number of modes of the start
-  double noise_transitions = 0.0;                           ///< weight of the prior on Q, in transitions
   std::ptrdiff_t iterations = 0;                            ///< of expectation-maximisation
   double score = std::numeric_limits<double>::quiet_NaN();  ///< mean log score of the left-out runs [nats/sample]
   double loss = std::numeric_limits<double>::quiet_NaN();   ///< against the best row, on the same runs [nats/sample]
@@ -31,16 +30,14 @@ struct RefineCandidate {
   bool selected = false;  ///< whether the bank comes from this row
 };
 
-/// The search for R, and the fit with R if it is not negligible.
+/// The fit with measurement noise, if it is not small.
 struct MeasurementStage {
-  std::ptrdiff_t starts = 0;            ///< of the search for R; 0 if R was given
-  std::ptrdiff_t failed_starts = 0;     ///< from which no step raised the likelihood; the best of the others is kept
   std::ptrdiff_t iterations = 0;        ///< with measurement noise; 0 if none were made or their result was rejected
   MeasuredFit end = MeasuredFit::none;  ///< how these iterations ended
-  /// Mean log score of the left-out runs before and after these iterations; NaN without cross-validation or R.
+  /// Mean log score of the left-out runs before and after these iterations; NaN without cross-validation or R. Before:
+  /// NaN where motions were tried with R, each with a row of its own.
   double score_before = std::numeric_limits<double>::quiet_NaN();
-  double score = std::numeric_limits<double>::quiet_NaN();
-  double seconds = 0.0;  ///< wall time of this stage
+  double score = std::numeric_limits<double>::quiet_NaN();  ///< after them
 };
 
 /// Whether transition probabilities depend on state and input, by cross-validation inside the training runs.
@@ -49,8 +46,8 @@ struct SwitchingStage {
   /// Mean log score of the left-out runs with constant T, and the gain of the logit with its standard error by run
   /// [nats/sample]; NaN if it was not tested.
   double score_before = std::numeric_limits<double>::quiet_NaN();
-  double gain = std::numeric_limits<double>::quiet_NaN();
-  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();
+  double gain = std::numeric_limits<double>::quiet_NaN();                 ///< of the logit
+  double gain_standard_error = std::numeric_limits<double>::quiet_NaN();  ///< by run
 };
 
 }  // namespace modebank
