@@ -137,7 +137,7 @@ LearnedBank maximise_measured(const RefineInput& in, const LearningRuns& runs, c
 /// Tries up to `most` motions times 1, 2 and 4 noise levels, at most options.most_modes in all, until another motion
 /// gains less than the limit on left-out runs. Starts: the likeliest modes from random stretches, each motion of a
 /// smaller bank split in two (half or twice the response time, 1.5 times the gain or a part of it), each level split in
-/// a quiet and a loud one. The likeliest after the maximisation stays.
+/// a quiet and a loud one. The likeliest after the maximisation stays. With exact states, then with unknown ones.
 void consider_motions(const RefineInput& in, Index most, CrossValidation& validation);
 
 /// Gives the closest motions of the chosen free chain one theta, as long as the bank with fewer motions is chosen.

@@ -61,17 +61,19 @@ Bank split(const Bank& bank, Index motion, double pace, double gain) {
   return more;
 }
 
-class MotionSearch {
- public:
-  MotionSearch(const RefineInput& in, CrossValidation& validation) : in_(in), validation_(validation) {}
+struct MotionSearch {
+  const RefineInput& in;
+  bool unknown_states;
+  CrossValidation& validation;
+  std::map<std::pair<Index, Index>, Bank> learned = {};  ///< by numbers of motions and levels
 
   void run(Index most_motions) {
-    const double limit = least_nats(validation_.samples().sum(), in_.single.response_samples);
+    const double limit = least_nats(validation.samples().sum(), in.single.response_samples);
     double fewer = -std::numeric_limits<double>::infinity();
     for (Index motions = 1; motions <= most_motions; ++motions) {
       double best = -std::numeric_limits<double>::infinity();
       for (const Index levels : tried_levels) {
-        if (const Index most = in_.options.most_modes; most > 0 && motions * levels > most) break;
+        if (const Index most = in.options.most_modes; most > 0 && motions * levels > most) break;
         const double before = std::exchange(best, std::max(best, consider(motions, levels)));
         if (levels > 1 && best < before + limit) break;
       }
@@ -80,30 +82,30 @@ class MotionSearch {
     }
   }
 
- private:
   /// The sum of scores of left-out runs, which must be possible.
   double consider(Index motions, Index levels) {
-    LearnedBank best = likeliest(starts(motions, levels), most_iterations, in_.unknown_states);
-    learned_.insert_or_assign({motions, levels}, best.bank);
+    LearnedBank best = likeliest(starts(motions, levels), most_iterations, unknown_states);
+    learned.insert_or_assign({motions, levels}, best.bank);
     const std::string name = fmt::format("motions x {}", levels);
-    if (in_.unknown_states)
-      validation_.consider(name, std::move(best));
+    if (unknown_states)
+      validation.consider(name, std::move(best));
     else
-      validation_.consider({{name, switching_model(best.bank)}});
-    return validation_.last().scores.log_likelihood.sum();
+      validation.consider({{name, switching_model(best.bank)}});
+    return validation.last().scores.log_likelihood.sum();
   }
 
-  /// The likeliest of these banks after so many iterations of expectation-maximisation, or with unknown states.
-  LearnedBank likeliest(const std::vector<Bank>& starts, Index iterations, bool unknown_states) const {
+  /// The likeliest of these banks after so many iterations of expectation-maximisation, or of a maximisation by the
+  /// filter.
+  LearnedBank likeliest(const std::vector<Bank>& starts, Index iterations, bool by_filter) const {
     std::vector<LearnedBank> ends(starts.size());
     tbb::parallel_for(std::size_t{0}, ends.size(), [&](std::size_t i) {
-      if (unknown_states) {
-        ends[i] = maximise_measured(in_, in_.all, starts[i], iterations);
+      if (by_filter) {
+        ends[i] = maximise_measured(in, in.all, starts[i], iterations);
         return;
       }
       SwitchingFit fit{switching_model(starts[i])};
-      iterate(in_.all.transitions, in_.prior(in_.all), in_.em(), iterations, fit);
-      ends[i] = {with_modes(in_.frame, fit.model), in_.prior(in_.all), fit.posterior.log_likelihood};
+      iterate(in.all.transitions, in.prior(in.all), in.em(), iterations, fit);
+      ends[i] = {with_modes(in.frame, fit.model), in.prior(in.all), fit.posterior.log_likelihood};
     });
     return std::move(*std::ranges::max_element(ends, is_below, &LearnedBank::log_likelihood));
   }
@@ -114,10 +116,10 @@ class MotionSearch {
       starts.push_back(from_stretches(motions));
       while (starts.back().noise_levels < levels) starts.back() = with_twice_the_levels(starts.back());
     }
-    if (const auto half = learned_.find({motions, levels / 2}); half != learned_.end())
+    if (const auto half = learned.find({motions, levels / 2}); half != learned.end())
       starts.push_back(with_twice_the_levels(half->second));
-    if (const auto fewer = learned_.find({motions - 1, levels}); fewer != learned_.end())
-      starts.push_back(likeliest(splits_of(fewer->second), trial_iterations, in_.unknown_states).bank);
+    if (const auto fewer = learned.find({motions - 1, levels}); fewer != learned.end())
+      starts.push_back(likeliest(splits_of(fewer->second), trial_iterations, unknown_states).bank);
     return starts;
   }
 
@@ -125,12 +127,12 @@ class MotionSearch {
   Bank from_stretches(Index motions) const {
     std::vector<Bank> starts;
     for (Index i = 0; i < (motions > 1 ? stretches : 1); ++i) {
-      starts.push_back(with_modes(in_.frame, start_from_stretches(in_.all.transitions, in_.prior(in_.all), motions,
-                                                                  in_.fits.length, in_.options.seed, i)));
+      starts.push_back(with_modes(in.frame, start_from_stretches(in.all.transitions, in.prior(in.all), motions,
+                                                                 in.fits.length, in.options.seed, i)));
       for (Index j = 0; j < motions; ++j) starts.back().motion.push_back(j);
     }
-    Bank bank = likeliest(starts, in_.options.max_iterations, false).bank;
-    return in_.unknown_states ? with_R_out_of_Q(in_, std::move(bank)) : bank;
+    Bank bank = likeliest(starts, in.options.max_iterations, false).bank;
+    return unknown_states ? with_R_out_of_Q(in, std::move(bank)) : bank;
   }
 
   /// Every motion split in two, in four ways.
@@ -142,10 +144,6 @@ class MotionSearch {
       for (const auto& [pace, gain] : paces_and_gains) splits.push_back(split(bank, motion, pace, gain));
     return splits;
   }
-
-  const RefineInput& in_;
-  CrossValidation& validation_;
-  std::map<std::pair<Index, Index>, Bank> learned_;  ///< by numbers of motions and levels
 };
 
 /// The model whose modes of the closest two motions, in standard errors of theta, are modes of one motion.
@@ -183,7 +181,8 @@ SwitchingRegression with_closest_tied(const RefineInput& in, const SwitchingFit&
 }  // namespace
 
 void consider_motions(const RefineInput& in, Index most, CrossValidation& validation) {
-  MotionSearch(in, validation).run(most);
+  MotionSearch{in, false, validation}.run(most);
+  if (in.unknown_states) MotionSearch{in, true, validation}.run(most);
 }
 
 void consider_ties(const RefineInput& in, CrossValidation& validation) {
